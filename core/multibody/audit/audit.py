@@ -103,9 +103,10 @@ class _Audit:
         measures = measured(description, ahead)
         ledger = Ledger(MEANT if _was_rounded(description, answer, measures) else ROUNDING)
         states = states_of(description, answer, samples.times)
-        check_samples(ledger, measures, samples, states, Sizes(description, samples))
+        sizes = Sizes(description, samples)
+        check_samples(ledger, measures, samples, states, sizes)
         if asked is not None:
-            self._check_motion(ledger, samples, ahead, after, measures, halves)
+            self._check_motion(ledger, samples, ahead, after, measures, halves, sizes)
         return ledger.worst
 
     def _check_motion(
@@ -116,6 +117,7 @@ class _Audit:
         after: AfterStart | None,
         measures: Sequence[Measures],
         halves: Sequence[float],
+        sizes: Sizes,
     ) -> None:
         """Compare what needs the start or windows of the motion."""
         description, answer, freedoms = self.description, self.answer, Freedoms(self.description)
@@ -136,7 +138,7 @@ class _Audit:
         for number, half in enumerate(halves):
             rows = slice(1 + number * NODES, 1 + (number + 1) * NODES)
             window = samples.at(rows)
-            gains = check_window(ledger, description, freedoms, window, _rows(ahead, rows), half)
+            gains = check_window(ledger, description, freedoms, window, _rows(ahead, rows), half, sizes.extent)
             for name, twist in gains.spins.items():
                 spin = motion[name].spin
                 spin = np.zeros((len(samples.times), 3)) if spin is None else spin
@@ -225,14 +227,12 @@ def _was_rounded(description: Description, answer: SceneSolution, measures: Sequ
     """
     if any("rounding" in sentence or "rounded" in sentence for sentence in answer.model.noticed):
         return True
-    size = 0.0
-    for pose in description.start.values():
-        size = max(size, float(np.abs(pose.position).max()))
+    for pose in description.start.values() if description.dimension == 3 else ():
         axes = pose.rotation
-        if axes is not None and np.abs(axes.T @ axes - np.eye(len(axes))).max() > ROUNDING:
+        if axes is not None and np.abs(axes.T @ axes - np.eye(3)).max() > ROUNDING:
             return True
     for own in measures:
-        known = ROUNDING * (size + own.connection.arm + own.connection.reach)
+        known = ROUNDING * (description.places + own.connection.arm + own.connection.reach)
         if any(np.abs(value[-1].real).max() > known for value in own.held.values()):
             return True
     return False

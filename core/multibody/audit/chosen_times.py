@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import log
+from math import hypot, log, sqrt
 from random import Random
 from zlib import crc32
 
@@ -49,7 +49,7 @@ def quickness(description: Description, samples: Samples) -> float:
     found, masses = 0.0, {name: body.mass for name, body in description.bodies.items() if body.mass > 0.0}
     for twist in samples.motion.values():
         if twist.spin is not None:
-            found = max(found, float(np.max(np.abs(twist.spin), initial=0.0)))
+            found = max(found, float(np.abs(twist.spin).max()))
     for body in description.bodies.values():
         if body.angular_velocity is not None:
             found = max(found, float(np.max(np.abs(body.angular_velocity))))
@@ -59,8 +59,8 @@ def quickness(description: Description, samples: Samples) -> float:
         lengths = [max(float(np.abs(pose.position).max()) for pose in samples.placement.values())]
     if min(lengths) > 0.0:
         length = min(lengths)
-        speed = max(float(np.max(np.abs(twist.velocity), initial=0.0)) for twist in samples.motion.values())
-        found = max(found, speed / length, float(np.sqrt(np.linalg.norm(description.gravity) / length)))
+        speed = max(float(np.abs(twist.velocity).max()) for twist in samples.motion.values())
+        found = max(found, speed / length, sqrt(hypot(*description.gravity) / length))
     for connection in description.connections:
         found = max(found, connection.quickness(samples.placement, masses, least))
     return found

@@ -8,7 +8,7 @@ power of all forces is that of the rates of momentum and spin in every virtual m
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, is_dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -41,7 +41,7 @@ class Definition:
     @cached_property
     def arm(self) -> float:
         """Largest offset of its places from centres of mass, or component of a place of the ground (m)."""
-        return max((abs(x) for place in self.places() for x in place.offset), default=0.0)
+        return max([abs(x) for place in self.places() for x in place.offset], default=0.0)
 
     @property
     def rolls(self) -> bool:
@@ -207,8 +207,8 @@ def _places(value: object) -> Iterator[Place]:
         for entry in value:
             yield from _places(entry)
     elif is_dataclass(value):
-        for own in fields(value):
-            yield from _places(getattr(value, own.name))
+        for own in vars(value).values():
+            yield from _places(own)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from math import hypot
 from typing import Any
@@ -69,10 +70,20 @@ class Description:
     undefined: dict[str, str]
     start: Placement
 
+    @cached_property
+    def places(self) -> float:
+        """Largest component of a place of a body at the start (m)."""
+        return max(float(np.abs(body.start.position).max()) for body in self.bodies.values())
+
+    @cached_property
+    def extent(self) -> float:
+        """The same, or the largest size of a connection: what a place is known beside (m)."""
+        return max(self.places, *(connection.reach + connection.arm for connection in self.connections), 0.0)
+
     @property
     def moderate(self) -> bool:
         """Whether its numbers are of sizes for which rates are formed to all digits."""
-        numbers = [abs(float(x)) for body in self.bodies.values() for x in (body.mass, *body.start.position) if x]
+        numbers = [abs(x) for body in self.bodies.values() for x in (body.mass, *body.start.position.tolist()) if x]
         numbers.extend(connection.reach for connection in self.connections if connection.reach)
         numbers.extend(connection.mass for connection in self.connections if connection.mass)
         numbers.extend(abs(x) for x in self.gravity if x)

@@ -66,8 +66,8 @@ class Ledger:
         """Compare the sizes of residuals at some times with what is allowed, shapes (n,)."""
         self.checked += 1
         size = np.abs(residual)
-        bound = np.broadcast_to(np.asarray(allowed, dtype=np.float64), size.shape)
-        if not np.all(size <= bound):
+        if not (size <= allowed).all():
+            bound = np.broadcast_to(np.asarray(allowed, dtype=np.float64), size.shape)
             beyond = ~(size <= bound)
             with np.errstate(divide="ignore", invalid="ignore"):
                 ratio = np.where(beyond, np.where(bound > 0.0, size / bound, np.inf), 0.0)
@@ -107,7 +107,7 @@ class Ledger:
         """
         self.checked += 1
         found = np.abs(np.minimum(value, 0.0) if one_sided else value)
-        floor = self.rounding * size
+        floor = self.rounding * np.asarray(size, dtype=np.float64)
         beyond = ~((found if found.ndim == 1 else found.max(axis=1)) <= floor)
         if rows is not None:
             beyond &= rows
@@ -115,7 +115,7 @@ class Ledger:
             return
         where = np.flatnonzero(beyond)
         some, found = samples.at(where), found[where].reshape(len(where), -1)
-        allowed = np.reshape(floor[where] if np.ndim(floor) else floor, (-1, 1))
+        allowed = np.reshape(floor[where] if floor.ndim else floor, (-1, 1))
         allowed = allowed + propagated(some, bodies, forces, residual)
         k = np.argmax(found - allowed, axis=1)
         own = np.arange(len(k))

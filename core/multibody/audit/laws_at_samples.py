@@ -55,6 +55,8 @@ class Sizes:
         Largest components of each body (m, m/s, rad/s).
     fastest : float
         Largest speed (m/s).
+    extent : float
+        Largest component of a place, or size of a connection (m).
     force : ndarray, shape (n,)
         N.
     """
@@ -68,6 +70,9 @@ class Sizes:
             if twist.spin is not None
         }  # fmt: skip
         self.fastest = max(self.speed.values())
+        self.extent = max(
+            *self.place.values(), *(connection.arm + connection.reach for connection in description.connections), 0.0
+        )
         mass = sum(body.mass for body in description.bodies.values()) + sum(one.mass for one in description.connections)
         self.force = np.full(samples.times.shape, mass * hypot(*description.gravity))
         if samples.forces:

@@ -152,25 +152,23 @@ def balance(
     for connection in description.connections:
         numbers, virtual = freedoms.virtual(connection.bodies)
         for name, effort in connection.efforts(placement, virtual).items():
-            row = np.broadcast_to(effort, (len(numbers), samples))
-            force = forces.get(name)
+            force, known = forces.get(name), 0.0 if force_errors is None else force_errors.get(name, 0.0)
             if force is None:
-                held.append(_spread(row, numbers, freedoms.count))
+                held.append(_spread(effort, numbers, rest.shape))
                 continue
             open_ = np.isnan(force)
             if open_.any():
                 # A direction that vanishes holds nothing.
-                held.append(_spread(row * open_, numbers, freedoms.count))
-                force = np.where(open_, 0.0, force)
-            power = row * force
+                held.append(_spread(effort * open_, numbers, rest.shape))
+                force, known = np.where(open_, 0.0, force), np.where(open_, 0.0, known)
+            power = effort * force
             rest[numbers] -= power
             size[numbers] += np.abs(power)
-            if force_errors is not None:
-                unsure[numbers] += np.abs(row) * np.where(open_, 0.0, force_errors[name])
+            unsure[numbers] += np.abs(effort) * known
         for line in connection.unanswered(placement, virtual):
-            held.append(_spread(np.broadcast_to(line, (len(numbers), samples)), numbers, freedoms.count))
+            held.append(_spread(line, numbers, rest.shape))
         if connection.loads:
-            load = np.broadcast_to(connection.load(placement, motion, virtual), (len(numbers), samples))
+            load = connection.load(placement, motion, virtual)
             rest[numbers] -= load
             size[numbers] += np.abs(load)
     return Balance(rest, size, _free(held), unsure)
@@ -213,8 +211,8 @@ def _add_inertia(
     size[spin : spin + 3] += largest * (np.abs(angular).max(axis=-1) + 6.0 * np.abs(twist).max(axis=-1) ** 2)
 
 
-def _spread(row: Numbers, numbers: list[int], count: int) -> Numbers:
-    found = np.zeros((count, row.shape[1]))
+def _spread(row: Numbers, numbers: list[int], shape: tuple[int, ...]) -> Numbers:
+    found = np.zeros(shape)
     found[numbers] = row
     return found
 

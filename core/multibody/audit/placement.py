@@ -64,6 +64,9 @@ class Twist:
     spin: Numbers | None = None
 
 
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
+"""The rotation of the plane by a right angle."""
+
 Placement = Mapping[str, Pose]
 Motion = Mapping[str, Twist]
 """Of bodies by name; those that are missing do not move."""
@@ -147,8 +150,11 @@ def carried(pose: Pose | None, components: tuple[float, ...]) -> Numbers:
 
 def turned(turn: Numbers) -> Numbers:
     """Return the rotation of the plane by an angle, shape (2, 2)."""
-    c, s = np.cos(turn), np.sin(turn)
-    return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+    found = np.empty((*turn.shape, 2, 2), dtype=turn.dtype)
+    found[..., 0, 0] = found[..., 1, 1] = np.cos(turn)
+    found[..., 1, 0] = np.sin(turn)
+    found[..., 0, 1] = -found[..., 1, 0]
+    return found
 
 
 def dot(a: Numbers, b: Numbers) -> Numbers:
@@ -159,7 +165,9 @@ def dot(a: Numbers, b: Numbers) -> Numbers:
 
 def across(v: Numbers) -> Numbers:
     """Return a vector of the plane, turned by a right angle counter-clockwise."""
-    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
+    found = np.empty_like(v)
+    found[..., 0], found[..., 1] = -v[..., 1], v[..., 0]
+    return found
 
 
 def cross(a: Numbers, b: Numbers) -> Numbers:
@@ -199,8 +207,7 @@ def _moved(pose: Pose, twist: Twist) -> Pose:
     if pose.rotation is None:
         return Pose(position, None, turn)
     if pose.position.shape[-1] == 2:
-        columns = np.stack([-pose.rotation[..., 1, :], pose.rotation[..., 0, :]], axis=-2)
-        return Pose(position, pose.rotation + step * twist.spin[..., None, None] * columns, turn)
+        return Pose(position, pose.rotation + step * twist.spin[..., None, None] * (QUARTER @ pose.rotation), turn)
     axes = np.swapaxes(pose.rotation, -1, -2)
     rates = np.swapaxes(cross(twist.spin[..., None, :], axes), -1, -2)
     return Pose(position, pose.rotation + step * rates, turn)

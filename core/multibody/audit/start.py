@@ -31,10 +31,8 @@ def check_places(ledger: Ledger, description: Description, start: Samples) -> No
     start : Samples
         One sample of the motion, at the start.
     """
-    size = max(float(np.max(np.abs(body.start.position))) for body in description.bodies.values())
     # A body in the origin is moved by as much as its axes turn the arms of its connections.
-    size = max(size, *(connection.reach + connection.arm for connection in description.connections), 0.0)
-    known = ledger.rounding
+    size, known = description.extent, ledger.rounding
     for name, body in description.bodies.items():
         pose, error = start.placement[name], start.errors[name][0]
         off = np.abs(pose.position[0] - body.start.position).max(keepdims=True)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import ClassVar
 
@@ -160,7 +161,7 @@ class String(Definition):
         """See `Definition.closed`: where there are no phases, a string is taut all the time."""
         return np.ones(count, dtype=bool) if state is None else state != "open"
 
-    @property
+    @cached_property
     def reach(self) -> float:
         """See `Definition.reach`."""
         radii = [knot.radius for run in self.runs for part in run.parts for knot in (part.a, part.b)]

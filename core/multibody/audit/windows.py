@@ -11,7 +11,6 @@ L. N. Trefethen, "Approximation Theory and Approximation Practice", chapters 3, 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,13 +75,13 @@ class Window:
         self.differences = (rates - np.where(_ITSELF, rates.sum(axis=1), 0.0)) / half
         self.weights = np.abs(self.differences).sum(axis=1)
 
-    def rates(self, values: Numbers, starts: Sequence[int], errors: Numbers) -> tuple[Numbers, Numbers]:
+    def rates(self, values: Numbers, starts: Numbers, errors: Numbers) -> tuple[Numbers, Numbers]:
         """Return the rates of several quantities, shape (NODES, components), and their errors, (NODES, quantities).
 
         Parameters
         ----------
         values : ndarray, shape (NODES, components)
-        starts : sequence of int
+        starts : ndarray of int, shape (quantities,)
             The first component of every quantity.
         errors : ndarray, shape (quantities,)
         """
@@ -100,7 +99,7 @@ class Window:
 
     def rate(self, values: Numbers, error: float) -> Rate:
         """Return the rate of a quantity from its samples, shape (NODES, ...), with an error."""
-        found, known = self.rates(values.reshape(NODES, -1), [0], np.array([error]))
+        found, known = self.rates(values.reshape(NODES, -1), np.zeros(1, dtype=int), np.array([error]))
         return Rate(found.reshape(values.shape), known[:, 0])
 
 
@@ -144,7 +143,13 @@ class Gains:
 
 
 def check_window(
-    ledger: Ledger, description: Description, freedoms: Freedoms, samples: Samples, ahead: Placement, half: float
+    ledger: Ledger,
+    description: Description,
+    freedoms: Freedoms,
+    samples: Samples,
+    ahead: Placement,
+    half: float,
+    extent: float,
 ) -> Gains:
     """Compare rates with velocities in a window, and return the accelerations in it.
 
@@ -152,6 +157,10 @@ def check_window(
     ----------
     ahead : mapping of str to Pose
         The placement moved by an imaginary step along the motion.
+    half : float
+        Half of the width (s).
+    extent : float
+        Size of the scene (m).
     """
     window = Window(samples.times, half, ledger.rounding)
     places, speeds = _quantities(samples, ahead)
@@ -161,14 +170,14 @@ def check_window(
     values = np.concatenate([one.values for one in every], axis=1)
     found, errors = window.rates(values, starts, np.array([one.error for one in every]))
     _check_kinematics(ledger, samples, places, starts, found, errors)
-    return _gains(
-        description, freedoms, samples, window, (speeds, starts[len(places) :], found, errors[:, len(places) :])
-    )
+    rates = (speeds, starts[len(places) :], found, errors[:, len(places) :])
+    return _gains(description, freedoms, samples, window, rates, extent)
 
 
 def _quantities(samples: Samples, ahead: Placement) -> tuple[list[_Quantity], list[_Quantity]]:
     """Return places and attitudes, whose rates the answer has, and velocities and spins."""
-    places, speeds = [], []
+    places: list[_Quantity] = []
+    speeds: list[_Quantity] = []
     for name, pose in ahead.items():
         twist, error = samples.motion[name], samples.errors[name][0]
         own = [("velocity", pose.position, error[POSITION], error[VELOCITY])]
@@ -205,6 +214,7 @@ def _gains(
     samples: Samples,
     window: Window,
     rates: tuple[list[_Quantity], Numbers, Numbers, Numbers],
+    extent: float,
 ) -> Gains:
     speeds, starts, found, errors = rates
     linear: dict[str, Numbers] = {}
@@ -231,10 +241,8 @@ def _gains(
         speed, spin_at = float(np.abs(spin.value).max()), freedoms.where[name][1]
         off = gained.error + 4.0 * speed * spin.error
         unsure[spin_at : spin_at + 3] = float(np.abs(body.inertia).max()) * off
-    size = max(float(np.abs(pose.position).max()) for pose in samples.placement.values())
-    size = max(size, *(connection.arm + connection.reach for connection in description.connections), 0.0)
     heaviest = max(body.mass for body in description.bodies.values())
-    unsure += NOISE * heaviest * size * max(1.0, size) / window.half**2
+    unsure += NOISE * heaviest * extent * max(1.0, extent) / window.half**2
     return Gains({name: Acceleration(one, angular.get(name)) for name, one in linear.items()}, spins, unsure)
 
 
