@@ -243,8 +243,8 @@ TESTED_IN |= {
     for through, names in {
         "contacts/test_impacts": "contacts/impulses phases/accumulation phases/recurring_bounces",
         "audit/test_audit": (
-            "audit/chosen_times audit/energy audit/failure audit/laws_at_samples audit/repetition audit/samples "
-            "audit/start audit/windows"
+            "audit/balanced audit/chosen_times audit/energy audit/failure audit/laws_at_samples audit/repetition "
+            "audit/samples audit/start audit/windows"
         ),
         "audit/test_definitions": (
             "audit/bodies audit/contact_definitions audit/contacts audit/definition audit/joints audit/laws "
