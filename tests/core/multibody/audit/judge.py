@@ -1,7 +1,9 @@
-"""How many answers to random scenes the audit refuses, and what it costs: `-m tests.core.multibody.audit.judge COUNT [FIRST]`.
+"""How many answers to random scenes the audit refuses, and what it costs.
 
-Right answers should all pass; what is refused is printed, with its seed, to be looked into. Scenes are numbered, so that
-many of them may be answered in pieces.
+    python -m tests.core.multibody.audit.judge COUNT [FIRST]
+
+Right answers should all pass; what is refused is printed, with its seed, to be looked into. Scenes are numbered, so
+that many of them may be answered in pieces.
 """
 
 from __future__ import annotations
