@@ -26,8 +26,8 @@ from service.execution.messages import Buffer
 from service.execution.worker_process import Process
 from service.observability.logs import LOG
 
-BEGIN_SECONDS = 0.5
-"""Time in which a process has to begin what it is given."""
+BEGIN_SECONDS = 5.0
+"""Time in which a process has to begin what it is given: longer than a sound one waits for a core on a busy machine."""
 
 PAUSE = 0.5
 """Seconds before another attempt where a process could not be started, or did not live until it was ready."""

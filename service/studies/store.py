@@ -6,6 +6,7 @@ members whose results are stored.
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import secrets
@@ -13,7 +14,7 @@ import sqlite3
 import time
 import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -55,6 +56,17 @@ CREATE INDEX IF NOT EXISTS studies_by_owner ON studies (owner, created);
 
 
 _STUDY = """SELECT id, owner, plan, status, message, created, started, finished, done, failed, seconds FROM studies """
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Wait until no other process, and no other store of this one, prepares the database of a folder."""
+    held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(held)
 
 
 class Store:
@@ -110,16 +122,19 @@ class Store:
 
     def _opened(self) -> sqlite3.Connection:
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        # The files beside the database get the permissions that it has.
-        file = os.open(self.folder / DATABASE, os.O_RDWR | os.O_CREAT, 0o600)
-        try:
-            os.fchmod(file, 0o600)
-        finally:
-            os.close(file)
+        file = self.folder / DATABASE
+        # Of two processes that change the mode of a new database at once, SQLite refuses one without waiting.
+        with _alone_in(self.folder):
+            # The files beside the database get the permissions that it has. A file that SQLite may have open is never
+            # opened here: closing it again would release the locks of this process.
+            with suppress(FileExistsError):
+                os.close(os.open(file, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600))
+            file.chmod(0o600)
+            return self._prepared(file)
+
+    def _prepared(self, file: Path) -> sqlite3.Connection:
         # Used by one thread at a time.
-        connection = sqlite3.connect(
-            self.folder / DATABASE, timeout=PATIENCE, isolation_level=None, check_same_thread=False
-        )
+        connection = sqlite3.connect(file, timeout=PATIENCE, isolation_level=None, check_same_thread=False)
         # What is removed is given back to the file system; this has to come before the tables.
         connection.execute("PRAGMA auto_vacuum = FULL")
         connection.execute("PRAGMA journal_mode = WAL")

@@ -43,7 +43,8 @@ def sleeping(seconds: float) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 async def service() -> AsyncIterator[Service]:
-    running = toy_service(compute_workers=2, deadline_seconds=1.0, max_backlog_seconds=1.0)
+    # A busy machine takes seconds to replace a process that was killed.
+    running = toy_service(compute_workers=2, deadline_seconds=20.0, max_backlog_seconds=1.0)
     async with running.lifespan():
         await until(lambda: running.warm)
         yield running
@@ -102,9 +103,12 @@ async def test_a_killed_process_fails_its_own_question_only(client: httpx.AsyncC
     await until(lambda: b"polhode_workers_lost_total 1.0" in service.metrics.exposition())
 
 
-async def test_a_computation_past_its_deadline_is_stopped(client: httpx.AsyncClient) -> None:
-    response = await client.post("/v1/toy", json=sleeping(3.0))
-    assert (response.status_code, response.json()["code"]) == (503, "deadline-exceeded")
+async def test_a_computation_past_its_deadline_is_stopped() -> None:
+    running = toy_service(compute_workers=1, deadline_seconds=1.0)
+    async with running.lifespan(), client_of(running) as client:
+        await until(lambda: running.warm)
+        response = await client.post("/v1/toy", json=sleeping(3.0))
+        assert (response.status_code, response.json()["code"]) == (503, "deadline-exceeded")
 
 
 def alive(pid: int) -> bool:
@@ -296,8 +300,10 @@ async def test_a_deadline_teaches_what_such_requests_cost() -> None:
         await until(lambda: running.warm)
         speed = running.compute.speed["/v1/toy"]
         assert speed.ratio == 1.0
-        late = [await client.post("/v1/toy", json=sleeping(-0.5)) for _ in range(3)]
-        assert {response.json()["code"] for response in late} == {"deadline-exceeded"}
+        for _ in range(3):
+            await until(lambda: running.compute.processes.ready)
+            late = await client.post("/v1/toy", json=sleeping(-0.5))
+            assert late.json()["code"] == "deadline-exceeded"
         assert speed.ratio > 1.5
 
 
@@ -332,16 +338,17 @@ async def test_stopping_answers_what_is_in_flight() -> None:
         assert (await client.post("/v1/toy", json=sleeping(0.1))).json()["code"] in ("shutting-down", "not-ready")
 
 
-async def test_a_price_beyond_all_bounds_counts_as_the_deadline(client: httpx.AsyncClient, service: Service) -> None:
-    await ready(service)
-    service.compute.speed.clear()
-    endless = asyncio.create_task(client.post("/v1/toy", json=sleeping(1e6)))
-    await until(lambda: working(service))
-    # The deadline of one second, shared by two processes.
-    assert service.compute.processes.backlog <= 0.5
-    assert (await client.post("/v1/toy", json=LARGE)).status_code == 200
-    assert (await endless).json()["code"] == "deadline-exceeded"
-    assert service.compute.processes.backlog == 0.0
+async def test_a_price_beyond_all_bounds_counts_as_the_deadline() -> None:
+    running = toy_service(compute_workers=2, deadline_seconds=3.0)
+    async with running.lifespan(), client_of(running) as client:
+        await until(lambda: running.warm)
+        endless = asyncio.create_task(client.post("/v1/toy", json=sleeping(1e6)))
+        await until(lambda: working(running))
+        # The deadline, shared by two processes.
+        assert running.compute.processes.backlog <= 1.5
+        assert (await client.post("/v1/toy", json=LARGE)).status_code == 200
+        assert (await endless).json()["code"] == "deadline-exceeded"
+        assert running.compute.processes.backlog == 0.0
 
 
 async def test_reading_is_priced_as_it_is_done_twice(

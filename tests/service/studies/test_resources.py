@@ -6,6 +6,8 @@ import asyncio
 import io
 import json
 import os
+import subprocess
+import sys
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -23,7 +25,7 @@ from service.problems import Refusal
 from service.settings import Settings
 from service.studies import resources
 from service.studies.folder import Ownership
-from service.studies.store import Store
+from service.studies.store import DATABASE, Store
 from service.studies.study import Owner, Quotas
 from service.studies.supervisor import Supervisor
 from tests.service.conftest import INLINE, client_of
@@ -33,6 +35,9 @@ from tests.service.studies.toy_table import TABLE
 from tests.service.toy_routes import GOOD
 
 pytestmark = pytest.mark.anyio
+
+TO_DELETE = "PRAGMA journal_mode=DELETE"
+"""Needs the database for one process alone."""
 
 GRID: dict[str, Any] = {
     "question": {"path": "/v1/toy", "request": GOOD},
@@ -400,6 +405,18 @@ def test_requests_are_stored_compressed_and_given_back_to_the_file_system(tmp_pa
     store.remove(identity)
     store.close()
     assert sum(file.stat().st_size for file in tmp_path.iterdir()) < 1_000_000
+
+
+def test_a_store_that_opens_leaves_the_locks_of_another_in_its_process(tmp_path: Path) -> None:
+    """Another process cannot change the mode of the database then (sqlite.org/howtocorrupt.html, 2.2)."""
+    first, second = Store(tmp_path), Store(tmp_path)
+    first.create(Owner(""), b"{}", {"count": 1, "bytes": 0}, Quotas(9, 9, 10**6))
+    second.create(Owner(""), b"{}", {"count": 1, "bytes": 0}, Quotas(9, 9, 10**6))
+    second.close()
+    change = f"import sqlite3; sqlite3.connect({str(tmp_path / DATABASE)!r}, timeout=0).execute('{TO_DELETE}')"
+    outcome = subprocess.run([sys.executable, "-c", change], capture_output=True, text=True)
+    assert "database is locked" in outcome.stderr
+    first.close()
 
 
 async def test_what_is_stored_is_readable_by_its_owner_alone(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
