@@ -207,8 +207,8 @@ class MassProperties:
         failed = "; ".join(condition.detail for condition in self.validity.violations)
         notice = Notice(
             "unphysical-inertia",
-            f"no distribution of positive mass has these moments of inertia (not so: {failed}); "
-            "the equations of motion hold for them all the same",
+            f"no real body has these moments of inertia, which violate {failed}; "
+            "the equations of motion can still be solved",
             (field,),
         )
         return self.with_warnings((notice,))

@@ -103,7 +103,7 @@ class Mesh(Uniform):
         if failed:
             raise UnphysicalInertia(
                 "faces",
-                f"bound a solid: no matter has the moments that were found (not so: {failed})",
+                f"bound a solid: no real body has the moments of its volume, which violate {failed}",
                 remedy="turn separate surfaces outwards, and take apart surfaces that pass through each other",
             )
         weighed = 0.0 if self.density is None else self._solid.share * float(found.exact_mass)

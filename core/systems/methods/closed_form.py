@@ -26,7 +26,7 @@ class ClosedFormEvaluation(AbstractMethod):
     between_steps: ClassVar[str] = "There are no steps: the closed form is evaluated at every time by itself."
     on_constraints: ClassVar[str] = "The closed form of a scene meets its constraints."
     when_to_use: ClassVar[str] = (
-        "Always, where a closed form exists: it is right to the last digits at any time and faster than every "
+        "Always, where a closed form exists: it is accurate to the last digit at any time and faster than every "
         "integrator that reaches an error of 1e-3."
     )
 
