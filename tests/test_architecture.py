@@ -252,7 +252,7 @@ TESTED_IN |= {
         ),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "
-            "table/frames table/laws table/measures table/rolling table/spatial_orientation"
+            "table/frames table/measures table/rolling table/spatial_orientation"
         ),
         "trajectory/test_columns": "trajectory/column_errors",
         "language/test_scene": "language/connections language/reading",

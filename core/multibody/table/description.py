@@ -105,6 +105,9 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
         if kind == "weld" and plane and _concentric(scene, numerals, connection):
             see(connection.a, "turn")
             see(connection.b, "turn")
+        elif kind == "spinning-frame" and not plane:
+            for name in found:
+                see(name, "orientation")
         elif kind in ("weld", "slider") or (kind == "pin" and connection.axis is not None):
             see(connection.a, "direction", "orientation")
             see(connection.b, "direction", "orientation")

@@ -116,7 +116,13 @@ def clock(measures: Measures) -> int:
 
 
 def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -> None:
-    """Add centrifugal and Coriolis forces: every unit vector and centre moves as particles do."""
+    """Add centrifugal and Coriolis forces: every unit vector and centre moves as particles do.
+
+    Notes
+    -----
+    In space the scene describes every orientation by unit vectors: the spin of a top or ball is conserved only as seen
+    from outside of the frame.
+    """
     coordinates = measures.coordinates
     rate = measures.numerals.number(connection.rate, (*path, "rate"))
     given = (0,) * measures.dimension if connection.at is None else connection.at
@@ -142,8 +148,6 @@ def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -
     if measures.dimension == 3 and not all(is_zero(coordinates.gravity[i]) for i in planar):
         raise InvalidParameter((*path, "about"), "be about the z axis: gravity has to be along it")
     for frame in coordinates.frames.values():
-        if frame.axis is not None or frame.turns is not None:
-            raise InvalidParameter(path, f'have no top or ball whose spin is counted apart, as "{frame.name}" is')
         # In the plane a steady spin has no moment about a centre: what it adds to a direction is along that.
         vectors = [frame.position]
         if frame.axes is not None:
