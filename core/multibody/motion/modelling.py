@@ -29,7 +29,7 @@ from core.multibody.motion.vertical_symmetry import precessing
 from core.multibody.motion.whole import Whole
 from core.multibody.reduction.passes import further, reduced
 from core.multibody.reduction.reduction import Reduced
-from core.multibody.reduction.turned_axes import plane_axes, spans_plane, turned_to, vertical_axes
+from core.multibody.reduction.turned_axes import line_axes, plane_axes, spans_plane, turned_to, vertical_axes
 from core.multibody.table.description import Described, described
 from core.multibody.table.table import Table
 
@@ -109,7 +109,7 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
 
 def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
     """Return the models of a table whose start meets its rows."""
-    small = reduced(found.measures.table, pinning=True)
+    small = _upright(found)
     pieces, accelerations, full = _start_of(found, small)
     turned = _turned(found, small, full)
     if turned is not None:
@@ -131,24 +131,46 @@ def _start_of(found: Described, small: Reduced) -> tuple[list[Piece], list[Ball]
     return pieces, accelerations, small.directions(accelerations)
 
 
-def _turned(found: Described, small: Reduced, accelerations: Sequence[Ball]) -> Reduced | None:
-    """Return a scene of space reduced along its own axes: where those of a plane leave less, or for the vertical."""
+def _upright(found: Described) -> Reduced:
+    """Return a scene reduced along axes of which one is vertical."""
     coordinates, table = found.measures.coordinates, found.measures.table
-    if coordinates.dimension == 2:
-        return None
-    moving = _moving(coordinates.vectors, [table.v, accelerations])
-    if not spans_plane([*moving, coordinates.gravity]) and not all(row.constant for row in small.table.rows):
-        # What starts along a line shows its plane later.
-        places = expansion(small.table, _LATER).places
-        later = [small.directions([place[k] for place in places]) for k in range(3, _LATER + 1)]
-        moving += _moving(coordinates.vectors, later)
-    axes = plane_axes(moving, coordinates.gravity)
-    if axes is not None:
-        flat = further(turned_to(table, coordinates.vectors, axes), pinning=True)
-        if len(flat.table.names) < len(small.table.names):
-            return flat
     axes = vertical_axes(coordinates.gravity)
-    return None if axes is None else further(turned_to(table, coordinates.vectors, axes), pinning=True)
+    if axes is None:
+        return reduced(table, pinning=True)
+    vectors = [*coordinates.vectors, *coordinates.directions]
+    return further(turned_to(table, vectors, [axes] * len(vectors)), pinning=True)
+
+
+def _turned(found: Described, small: Reduced, accelerations: Sequence[Ball]) -> Reduced | None:
+    """Return a scene reduced along the axes of its plane and of lines, where these leave less of it."""
+    coordinates, table = found.measures.coordinates, found.measures.table
+    vectors, gravity = coordinates.vectors, coordinates.gravity
+    derivatives = [table.v, accelerations]
+    if not all(row.constant for row in small.table.rows) and _shows_less(vectors, derivatives, gravity):
+        # What starts along a line may leave it later.
+        places = expansion(small.table, _LATER).places
+        derivatives += [small.directions([place[k] for place in places]) for k in range(3, _LATER + 1)]
+    plane = None
+    if coordinates.dimension == 3:
+        plane = plane_axes(_moving(coordinates.positions, derivatives), gravity)
+    lines = [line_axes(_moving([vector], derivatives)) for vector in vectors]
+    if plane is None and not any(lines):
+        return None
+    common, directions = plane or vertical_axes(gravity), coordinates.directions
+    # What does not turn keeps its direction, which is along the first axis then.
+    lines += [line_axes(_moving([direction], [table.q])) for direction in directions]
+    axes = [line or common for line in lines]
+    less = further(turned_to(table, [*vectors, *directions], axes), pinning=True)
+    return less if len(less.table.names) < len(small.table.names) else None
+
+
+def _shows_less(
+    vectors: Sequence[Sequence[int]], derivatives: Sequence[Sequence[Ball]], gravity: Sequence[Ball]
+) -> bool:
+    """Return whether the first derivatives of a motion leave open along which lines or in which plane it goes."""
+    if any(line_axes(_moving([vector], derivatives)) is not None for vector in vectors):
+        return True
+    return len(gravity) == 3 and not spans_plane([*_moving(vectors, derivatives), gravity])
 
 
 def _moving(vectors: Sequence[Sequence[int]], changes: Sequence[Sequence[Ball]]) -> list[list[Ball]]:

@@ -77,14 +77,24 @@ class Coordinates:
         return Point(self._offset(frame, centre, frame.places[spot], path), body)
 
     @property
-    def vectors(self) -> list[list[int]]:
-        """The coordinates in space that are the components of vectors: centres, axes and turns."""
+    def positions(self) -> list[list[int]]:
+        """The coordinates that are the components of vectors in space: centres and axes."""
         found: list[list[int]] = []
         for frame in self.frames.values():
             found += [frame.position, *(frame.axes or ())]
             found += [] if frame.axis is None else [frame.axis[1]]
-            found += [] if frame.turns is None else [list(frame.turns)]
         return found
+
+    @property
+    def directions(self) -> list[list[int]]:
+        """The coordinates that are cosine and sine of an angle of the plane."""
+        return [list(frame.direction) for frame in self.frames.values() if frame.direction is not None]
+
+    @property
+    def vectors(self) -> list[list[int]]:
+        """The coordinates that are the components of vectors: centres, axes and turns."""
+        turns = [list(frame.turns) for frame in self.frames.values() if frame.turns is not None]
+        return [*self.positions, *turns]
 
     def vector_of(self, body: str | None, components: Sequence[Ball], path: Path) -> list[Poly]:
         """Return a vector that is fixed in a body, given by its components in body axes; None is the ground."""

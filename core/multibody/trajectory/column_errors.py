@@ -81,7 +81,7 @@ def with_natural_sizes(
     """Return columns, those that are small at all times with how large they are between the start and the farthest.
 
     A rate is zero where the motion turns back. There its error is that of the whole motion, and no share of what is
-    left of the rate.
+    left of the rate. What is zero at the other times, too, has no size.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def with_natural_sizes(
     other = columns_at(farthest * PLACES_BETWEEN)
     return {
         name: replace(column, scale=max(column.scale or 0.0, other[name].largest))
-        if column.unit in small and name in other
+        if column.unit in small and name in other and other[name].largest > other[name].error
         else column
         for name, column in columns.items()
     }

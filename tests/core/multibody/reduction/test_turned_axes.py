@@ -10,9 +10,14 @@ import pytest
 from flint import arb
 
 from core.balls import precision
+from core.errors import MechanicsError
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, is_zero
-from core.multibody.reduction.turned_axes import plane_axes, spans_plane, vertical_axes
+from core.multibody.reduction.turned_axes import line_axes, plane_axes, spans_plane, vertical_axes
 from core.multibody.solve import solve_scene
+from tests.core.multibody.relations.geometry import dimension, turned
+from tests.core.multibody.relations.numbers import Json
+from tests.core.multibody.relations.relations import OF_OUTPUTS
+from tests.core.multibody.relations.sources import catalogue, random_scene
 from tests.core.multibody.worked_examples import column, read
 
 Vector = list[Any]
@@ -137,3 +142,80 @@ def test_the_vertical_is_an_axis_where_it_is_oblique() -> None:
 def test_vectors_on_a_line_span_no_plane() -> None:
     assert not spans_plane([[arb(1), arb(2), arb(3)], [ZERO, ZERO, ZERO], [arb(-2), arb(-4), arb(-6)]])
     assert spans_plane([[arb(1), arb(2), arb(3)], [arb(-2), arb(-4), arb(6)]])
+
+
+def test_the_vertical_of_the_plane_is_its_second_axis() -> None:
+    with precision(BITS):
+        assert vertical_axes([ZERO, -ONE]) is None
+        axes = vertical_axes([arb(3), arb(-4)])
+        assert axes is not None
+        assert [[float(x) for x in axis] for axis in axes] == [[0.8, 0.6], [-0.6, 0.8]]
+
+
+@pytest.mark.parametrize("changes", [[], [[0, 0]], [[0, 2]], [[1, 2], [2, 1]], [[1, 2, 3], [1, 2, 4]]], ids=str)
+def test_no_line_has_its_own_axes(changes: list[list[int]]) -> None:
+    with precision(BITS):
+        assert line_axes([[arb(x) for x in vector] for vector in changes]) is None
+
+
+@pytest.mark.parametrize("changes", [[[3, 4], [0, 0], [-6, -8]], [[2, 0, 1], [0, 0, 0], [4, 0, 2]]], ids=str)
+def test_the_first_axis_is_along_a_line(changes: list[list[int]]) -> None:
+    with precision(BITS):
+        axes = line_axes([[arb(x) for x in vector] for vector in changes])
+        assert axes is not None
+        assert len(axes) == len(changes[0])
+        assert all(is_zero(sum((x * y for x, y in zip(axis, changes[0], strict=True)), ZERO)) for axis in axes[1:])
+
+
+def model_of(request: Json) -> tuple[str, ...]:
+    """Return the model of a scene, or why it has none."""
+    scene = {key: request[key] for key in OF_OUTPUTS if key in request}
+    try:
+        return (solve_scene(read(scene), (), ("accelerations",)).model.name,)
+    except MechanicsError as refused:
+        return (type(refused).__name__, str(refused)[:60])
+
+
+@pytest.mark.parametrize("about", [2, 0])
+@pytest.mark.parametrize("source", ["the catalogue", "200 random scenes"])
+def test_scenes_turned_by_3_4_5_have_the_models_of_the_upright_ones(source: str, about: int) -> None:
+    scenes = catalogue() if source == "the catalogue" else {str(seed): random_scene(seed) for seed in range(700, 900)}
+    found: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {}
+    for name, request in scenes.items():
+        made = turned(request, about=about) if about == 2 or dimension(request) == 3 else None
+        if made is not None:
+            found[name] = (model_of(request), model_of(made.request))
+    assert len(found) > 20
+    assert {name: models for name, models in found.items() if models[0] != models[1]} == {}
+
+
+LINES: dict[str, dict[str, Any]] = {
+    # What moves along a line in the plane, each body along its own, without gravity to show a direction.
+    "spring and damper": {
+        "bodies": {"a": {"mass": 1, "at": [0.6, 0.8]}},
+        "connections": [
+            {"kind": "spring", "a": "a", "b": [0, 0], "stiffness": 4, "rest_length": 2},
+            {"kind": "damper", "a": "a", "b": [0, 0], "coefficient": 1},
+        ],
+    },
+    "string over two pegs": {
+        "bodies": {"a": {"mass": 1, "at": [0.6, 0.8]}, "b": {"mass": 2, "at": ["1+5/13", "12/13"]}},
+        "connections": [
+            {"kind": "string", "through": ["a", [0, 0], [1, 0], "b"]},
+            {"kind": "force", "place": "a", "force": [3, 4]},
+            {"kind": "force", "place": "b", "force": [5, 12]},
+        ],
+    },
+    "bar that does not turn": {
+        "bodies": {
+            "a": {"mass": 1, "inertia": 0.1, "at": [0.6, 0.8], "angle": "acos(0.6)", "places": {"p": [-0.5, 0]}}
+        },
+        "connections": [{"kind": "spring", "a": "a.p", "b": [0, 0], "stiffness": 4, "rest_length": 0.2}],
+    },
+}
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_what_moves_along_an_oblique_line_is_linear(name: str) -> None:
+    answer = solve_scene(read(LINES[name]), [0.2, 0.4], ("trajectory",))
+    assert answer.model.name in ("modes", "constant acceleration")
