@@ -16,7 +16,7 @@ COPY examples examples
 # Kernels are compiled by answering every example once, and kept beside the compiler's setting below. The generic
 # processor is named so that the image runs on every machine of its architecture.
 ENV NUMBA_CACHE_DIR=/polhode/compiled NUMBA_CPU_NAME=generic
-RUN mkdir compiled && environment/bin/python -m service.execution.forkserver_preload && environment/bin/python -m compileall -q core service
+RUN mkdir compiled && environment/bin/python -m service.execution.compilation && environment/bin/python -m compileall -q core service
 
 FROM python:3.11-slim-bookworm
 

@@ -24,9 +24,9 @@ check: environment
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-# Otherwise both processes of the tests would compile all of them.
+# Otherwise every process of the tests would compile all of them.
 kernels: environment
-	$(BIN)/python -c 'from service.app import app; app.answering.warm()'
+	$(BIN)/python -m service.execution.compilation
 
 environment: $(ENV)/made
 

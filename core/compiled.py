@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
+import sys
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
@@ -20,11 +21,13 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, TypeVar, cast
 
+import llvmlite
 import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import caching, serialize
+from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
 from core.lanes import LANES, fused
@@ -46,11 +49,17 @@ def _choose_directory() -> None:
 _choose_directory()
 
 
-def has_compiled_code() -> bool:
-    """Return whether an earlier process has kept compiled code, so that this one need not compile."""
+def code_directory() -> Path:
+    """Return the directory of compiled code; where it is not writable, numba keeps code in one of the user."""
     config: Any = numba.config
-    directory = str(config.CACHE_DIR)
-    return bool(directory) and any(Path(directory).rglob("*.nbc"))
+    return Path(config.CACHE_DIR or Path(__file__).parent / "__pycache__" / "compiled")
+
+
+def compiler() -> str:
+    """Return the versions of the compiler and the processor for which it compiles."""
+    target: Any = cpu_target
+    versions = [f"{module.__name__} {module.__version__}" for module in (numba, llvmlite, np)]
+    return f"{sys.version} {versions} {target.target_context.codegen().magic_tuple()}"
 
 
 @cache

@@ -104,6 +104,9 @@ def _serve(settings: Settings, given: Mapping[str, Any]) -> None:
     os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
     # uvicorn raises the signal that stopped it again when it has finished; this makes that an ordinary end.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
+    from service.execution.compilation import ensure_compiled
+
+    ensure_compiled()
     several = settings.workers > 1
     if not several:
         # It imports as much as this process does, at the same time.
@@ -111,9 +114,6 @@ def _serve(settings: Settings, given: Mapping[str, Any]) -> None:
         forkserver.ensure_running()
         # Until the application is ready; next to nothing of what is made before is ever garbage.
         gc.disable()
-    from core.compiled import has_compiled_code
-
-    LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: about 40 s, once")
     import uvicorn
 
     from service.app import app

@@ -1,14 +1,9 @@
 """Imported once by the fork server of the compute processes, which then inherit every kernel loaded and compiled."""
 
 import gc
-from importlib import import_module
 
 # Next to nothing of what is made until the end of this module is garbage; to look for it takes a sixth of the time.
 gc.disable()
-
-# The server process begins with the methods at the same time. On empty caches, each compiles half and loads the rest.
-for compiling in ("core.elliptic.functions", "core.multibody.motion.generic_equation", "core.rotation.torque_free"):
-    import_module(compiling)
 
 from service.execution.worker import handler_of, terms_of  # noqa: E402
 from service.observability.logs import configure  # noqa: E402

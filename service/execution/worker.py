@@ -86,9 +86,13 @@ Operation = Callable[[Terms, Task], Any]
 @cache
 def handler_of(terms: Terms) -> RequestHandler:
     """Return this process's handler of requests, warm; inherited warm if the fork server has made it."""
+    return warm_handler(terms)
+
+
+def warm_handler(terms: Terms, *, scenes_first: bool = False) -> RequestHandler:
+    """Return a handler of requests for which every kernel is compiled or loaded; see `RequestHandler.warm`."""
     made = RequestHandler(_routes(terms.table).values(), terms.budget, terms.limits)
-    # The server process ends with them at the same time.
-    made.warm(scenes_first=True)
+    made.warm(scenes_first=scenes_first)
     return made
 
 

@@ -107,6 +107,26 @@ def test_hostile_headers(server: Server, headers: dict[str, str], status: int, c
     assert (found, json.loads(content)["code"]) == (status, code)
 
 
+def megabytes(pid: int, kind: str) -> float:
+    """Return a kind of memory of a process, as Linux counts it."""
+    text = Path(f"/proc/{pid}/smaps_rollup").read_text()
+    return float(text.split(f"\n{kind}:")[1].split()[0]) / 1024
+
+
+def children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+@pytest.mark.skipif(not Path("/proc/self/smaps_rollup").exists(), reason="the memory of processes is read from /proc")
+def test_the_compiler_leaves_no_memory_behind(server: Server) -> None:
+    """A process that compiled half of the kernels has more than 700 MB for good."""
+    server.wait_until_ready()
+    assert megabytes(server.process.pid, "Pss") < 300
+    family = [pid for child in children(server.process.pid) for pid in (child, *children(child))]
+    assert len(family) >= 2
+    assert all(megabytes(pid, "Private_Dirty") < 150 for pid in family)
+
+
 GOOD = b"POST /v1/rotation/trajectory HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\n"
 
 
