@@ -255,7 +255,10 @@ TESTED_IN |= {
             "table/frames table/measures table/rolling table/spatial_orientation"
         ),
         "trajectory/test_columns": "trajectory/column_errors",
-        "language/test_scene": "language/connections language/reading",
+        "language/test_scene": (
+            "language/body language/connection language/contacts language/forces language/joints language/reading "
+            "language/strings"
+        ),
         "reduction/test_passes": "reduction/pinning reduction/reduction",
         "trajectory/test_along": "trajectory/integrals",
         "trajectory/test_occurrences": "trajectory/smooth_search",

@@ -17,7 +17,9 @@ from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
-from core.multibody.language import connections, scene
+from core.multibody.language.body import SceneBody as DescribedBody
+from core.multibody.language.connection import Connection
+from core.multibody.language.kinds import KINDS
 from core.multibody.language.reading import scene_from, unknown_field
 from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
@@ -77,13 +79,13 @@ def _by_core(hint: Any) -> Any:
 
 
 def _body_form() -> type[Request]:
-    hints = get_type_hints(scene.SceneBody)
+    hints = get_type_hints(DescribedBody)
     own: dict[str, Any] = {
         entry.name: (_by_core(hints[entry.name]), ... if entry.default is MISSING and entry.name == "at" else None)
-        for entry in fields(scene.SceneBody)
+        for entry in fields(DescribedBody)
     }
     own["body"] = (Body | None, None)
-    form: type[Request] = create_model("SceneBody", __base__=Request, __doc__=scene.SceneBody.__doc__, **own)
+    form: type[Request] = create_model("SceneBody", __base__=Request, __doc__=DescribedBody.__doc__, **own)
     return form
 
 
@@ -91,18 +93,18 @@ def _connection_form() -> type[Request]:
     """Return the form with the fields of all kinds; core checks those of each."""
     kinds: dict[str, list[str]] = {}
     hints: dict[str, Any] = {}
-    for kind, cls in connections.KINDS.items():
-        for name, hint in get_type_hints(cls).items():
-            if name != "kind":
-                kinds.setdefault(name, []).append(kind)
-                hints[name] = hints[name] | hint if name in hints else hint
+    for kind, cls in KINDS.items():
+        written = get_type_hints(cls)
+        for name in (entry.name for entry in fields(cls)):
+            kinds.setdefault(name, []).append(kind)
+            hints[name] = hints[name] | written[name] if name in hints else written[name]
     own: dict[str, Any] = {
         name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
         for name, hint in hints.items()
     }
-    meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in connections.KINDS.items())
-    own["kind"] = (Literal.__getitem__(tuple(connections.KINDS)), Field(description=meaning))
-    docs = connections.Connection.__doc__
+    meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in KINDS.items())
+    own["kind"] = (Literal.__getitem__(tuple(KINDS)), Field(description=meaning))
+    docs = Connection.__doc__
     form: type[Request] = create_model("SceneConnection", __base__=Request, __doc__=docs, **own)
     return form
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from core.multibody.audit.placement import Numbers, Place, Placement, Pose, turned
-from core.multibody.language.connections import GROUND
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.language.written import GROUND
 
 Path = tuple[str | int, ...]
 

@@ -12,7 +12,7 @@ from core.multibody.audit.joints import AXES
 from core.multibody.audit.placement import Undefined
 from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
 from core.multibody.audit.surfaces import Face, Round
-from core.multibody.language.connections import GROUND
+from core.multibody.language.written import GROUND
 
 
 def touch_of(reader: Reader, name: str, connection: Any, path: Path) -> Touch:

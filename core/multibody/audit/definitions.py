@@ -43,8 +43,8 @@ from core.multibody.audit.laws import (
 )
 from core.multibody.audit.placement import LARGEST, LEAST, Place, Placement, Undefined, length
 from core.multibody.audit.strings import Chain, Knot, Run, String, run_of
-from core.multibody.language.connections import GROUND
 from core.multibody.language.scene import Scene
+from core.multibody.language.written import GROUND
 
 
 @dataclass(frozen=True)

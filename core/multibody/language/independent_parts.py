@@ -8,11 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from core.multibody.language.connections import GROUND, Connection
+from core.multibody.language.connection import Connection
 from core.multibody.language.scene import Scene, ScenePart
-
-_ENDS = ("a", "b", "place", "body")
-"""Fields of connections that name a place or a body."""
+from core.multibody.language.written import GROUND
 
 
 def independent_parts(scene: Scene) -> Sequence[Scene]:
@@ -53,7 +51,7 @@ def _part(scene: Scene, bodies: Sequence[str], joined: Mapping[int, Sequence[str
     own = [
         (number, connection)
         for number, connection in scene.numbered()
-        if (joined[number][0] in bodies if joined[number] else first or connection.kind == "spinning-frame")
+        if (joined[number][0] in bodies if joined[number] else first or connection.everywhere)
     ]
     return ScenePart(
         {name: scene.bodies[name] for name in bodies},
@@ -67,12 +65,7 @@ def _part(scene: Scene, bodies: Sequence[str], joined: Mapping[int, Sequence[str
 
 def _bodies_of(connection: Connection) -> Iterator[str]:
     """Yield the names of the bodies that a connection joins."""
-    places: list[Any] = [getattr(connection, end, None) for end in _ENDS]
-    on = getattr(connection, "on", None)
-    places.append(on.get("at") if isinstance(on, Mapping) else None)
-    through = getattr(connection, "through", ())
-    places += through if isinstance(through, (list, tuple)) else []
-    for place in places:
+    for place in connection.places():
         if isinstance(place, str) and place != GROUND:
             yield place.partition(".")[0]
 

@@ -10,8 +10,8 @@ from flint import arb, fmpq
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.language.body import SceneBody
 from core.multibody.language.numerals import Numerals
-from core.multibody.language.scene import SceneBody
 from core.quantities import members_of
 
 

@@ -7,10 +7,12 @@ from dataclasses import MISSING, fields
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.language.connections import KINDS, NOT_YET
+from core.multibody.language.body import SceneBody
+from core.multibody.language.connection import Connection
 from core.multibody.language.faults_of_parts import FaultsOfParts
+from core.multibody.language.kinds import KINDS, NOT_YET
 from core.multibody.language.numerals import member
-from core.multibody.language.scene import Scene, SceneBody, check_size
+from core.multibody.language.scene import Scene, check_size
 from core.near_names import did_you_mean
 
 
@@ -36,7 +38,7 @@ def scene_from(description: Any) -> Scene:
     connections = given.get("connections", ())
     if isinstance(connections, Sequence) and not isinstance(connections, str):
         check_size((), connections)
-        joined: list[Any] = []
+        joined: list[Connection] = []
         for i, entry in enumerate(connections):
             with faults.part():
                 joined.append(_connection(entry, ("connections", i)))
@@ -45,7 +47,7 @@ def scene_from(description: Any) -> Scene:
     return Scene(**given)
 
 
-def _connection(entry: Any, path: Path) -> Any:
+def _connection(entry: Any, path: Path) -> Connection:
     if not isinstance(entry, Mapping):
         raise InvalidParameter(path, "be an object")
     kind = entry.get("kind")

@@ -10,60 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Literal
 
 from core.errors import InvalidParameter, Path
-from core.multibody.language.connections import GROUND, Connection, Number, Vector
+from core.multibody.language.body import SceneBody
+from core.multibody.language.connection import Connection
 from core.multibody.language.numerals import LONGEST_NAME, NAME, member
+from core.multibody.language.written import GROUND, Number, Vector
 
 MOST_BODIES = 100
 MOST_CONNECTIONS = 400
-
-
-@dataclass(frozen=True)
-class SceneBody:
-    """What has mass: a particle, a rigid body of the plane or of space, a symmetric top.
-
-    Attributes
-    ----------
-    mass : number
-        In kg; 0 where something else moves with the body.
-    at : vector
-        Centre of mass (m).
-    velocity : vector, optional
-        Of the centre of mass (m/s); what is left out follows from the connections.
-    inertia : number, optional
-        In the plane: about the centre of mass (kg m^2). Without it the body is a particle.
-    moments : vector, optional
-        In space: principal moments about the centre of mass, in body axes (kg m^2).
-    tensor : three vectors, optional
-        In space: tensor of inertia about the centre of mass, in body axes (kg m^2).
-    body : Body of core.bodies, optional
-        In space, in place of `mass` and `moments`: its mass properties, about its centre of mass.
-    radius : number, optional
-        Of the rim on which it rolls and around which strings wind (m).
-    angle : number, optional
-        In the plane: of the body's first axis, counter-clockwise (rad).
-    axes : three vectors, optional
-        In space: directions of the body axes; the identity if left out.
-    angular_velocity : number or vector, optional
-        Rad/s; in space in body axes.
-    places : mapping of str to vector
-        Points of the body, in body axes from its centre of mass (m).
-    """
-
-    at: Vector
-    mass: Number | None = None
-    velocity: Vector | None = None
-    inertia: Number | None = None
-    moments: Vector | None = None
-    tensor: Sequence[Vector] | None = None
-    body: Any = None
-    radius: Number | None = None
-    angle: Number | None = None
-    axes: Sequence[Vector] | None = None
-    angular_velocity: Number | Vector | None = None
-    places: Mapping[str, Vector] = field(default_factory=lambda: MappingProxyType({}))
 
 
 def check_size(bodies: Sized, connections: Sized) -> None:
@@ -122,7 +78,7 @@ class Scene:
         """Return the names of the connections: those given, else kind and number."""
         found: dict[str, int] = {}
         for i, connection in self.numbered():
-            given: Any = getattr(connection, "name", None)
+            given = connection.name
             if given is not None:
                 check_name(given, ("connections", i, "name"))
             name = f"{connection.kind}-{i + 1}" if given is None else given

@@ -49,10 +49,7 @@ _STILL = 60
 
 def one_sided(scene: Scene) -> bool:
     """Return whether a scene has anything that pushes and does not pull, or a string of which a jerk is foreseen."""
-    return any(
-        connection.kind == "contact" or getattr(connection, "restitution", None) is not None
-        for connection in scene.connections
-    )
+    return any(connection.one_sided for connection in scene.connections)
 
 
 def motion_in_phases(scene: Scene, end: float, numerals: Callable[[], Numerals] | None = None) -> PhaseMotion:

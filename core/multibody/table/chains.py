@@ -37,13 +37,10 @@ from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.momenta import StateFunction
 
-ALONE = ("spinning-frame",)
-"""Connections beside which a chain is not modelled: what they do to its links."""
-
 
 def has_chain(scene: Scene) -> bool:
     """Return whether a chain is in a scene, which then ends where a string becomes slack."""
-    return any(connection.kind == "chain" for connection in scene.connections)
+    return not all(connection.continues for connection in scene.connections)
 
 
 def chain(measures: Measures, name: str, connection: Any, path: Path) -> None:
@@ -113,7 +110,7 @@ def _require_alone(measures: Measures, path: Path) -> None:
     if measures.dimension != 2:
         raise InvalidParameter(path, "be in the plane: the plane of the chain and its peg")
     for i, other in measures.coordinates.scene.numbered():
-        if other.kind in ALONE:
+        if other.everywhere:
             raise NotApplicable(
                 f"what a {other.kind} does to the links of a chain is not modelled", path=("connections", i)
             )

@@ -23,7 +23,7 @@ from core.multibody.algebra.polynomials import (
     dot,
     is_zero,
 )
-from core.multibody.language.connections import GROUND
+from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.contact_geometry_in_space import contact_in_space
 from core.multibody.table.contact_places import gap_of_rims, is_on, place_on, refuse_limits, two_rims

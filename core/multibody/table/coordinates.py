@@ -21,11 +21,12 @@ from core.multibody.algebra.polynomials import (
     coordinate,
     is_zero,
 )
-from core.multibody.language.connections import GROUND, Place
+from core.multibody.language.body import SceneBody
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
-from core.multibody.language.scene import Scene, SceneBody
+from core.multibody.language.scene import Scene
+from core.multibody.language.written import GROUND, Place
 from core.multibody.table.frames import Frame, Given, Point
 from core.multibody.table.spatial_orientation import SpatialOrientation
 from core.multibody.table.table import Row, Table

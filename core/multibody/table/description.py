@@ -9,10 +9,11 @@ from typing import Any
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import perpendicular
 from core.multibody.algebra.polynomials import ONE, Poly, constant, difference, evaluated, is_zero
-from core.multibody.language.connections import GROUND
+from core.multibody.language.connection import Aspect, Surroundings
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.language.written import GROUND
 from core.multibody.table import attraction, laws
 from core.multibody.table.chains import chain
 from core.multibody.table.connection_effects import WorkTerm
@@ -22,9 +23,6 @@ from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rolling
 from core.multibody.table.rolling_in_space import rolling_in_space
 from core.multibody.table.strings import string
-
-_TURNED = ("torsion-spring", "motor", "torque")
-"""Connections that see how far a body has turned."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
     found: dict[str, set[str]] = {name: set() for name in scene.bodies}
     plane = dimension_of(scene) == 2
 
-    def see(place: Any, *what: str) -> None:
+    def see(place: object, *what: Aspect) -> None:
         if not isinstance(place, str):
             return
         body, _, spot = place.partition(".")
@@ -94,56 +92,13 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
                 if plane:
                     found[body].add("direction")
 
-    for entry in scene.connections:
-        connection: Any = entry
-        kind = connection.kind
-        for attribute in ("a", "b", "place"):
-            see(getattr(connection, attribute, None))
-        on = getattr(connection, "on", None)
-        if isinstance(on, Mapping):
-            see(on.get("at"), "direction", "orientation")
-        if kind == "weld" and plane and _concentric(scene, numerals, connection):
-            see(connection.a, "turn")
-            see(connection.b, "turn")
-        elif kind == "spinning-frame" and not plane:
-            for name in found:
-                see(name, "orientation")
-        elif kind in ("weld", "slider") or (kind == "pin" and connection.axis is not None):
-            see(connection.a, "direction", "orientation")
-            see(connection.b, "direction", "orientation")
-        if kind in ("string", "chain") and isinstance(connection.through, (list, tuple)):
-            for place in connection.through:
-                see(place)
-                body = scene.bodies.get(place) if isinstance(place, str) else None
-                if kind == "string" and body is not None and body.radius is not None:
-                    see(place, "turn")
-        if kind == "rolling" or (kind == "contact" and (plane or connection.friction is not None)):
-            for place in (connection.place, connection.a, connection.b):
-                if plane or kind == "rolling" or _is_ball(scene, place):
-                    see(place, "turn")
-        if kind in _TURNED or (kind == "damper" and connection.measure == "turn"):
-            for place in (getattr(connection, "a", None), getattr(connection, "b", None)):
-                see(place, "turn")
-            see(getattr(connection, "body", None), "turn" if plane else "orientation")
+    surroundings = Surroundings(scene.bodies, numerals, plane)
+    for connection in scene.connections:
+        for place in connection.places():
+            see(place)
+        for place, aspect in connection.aspects(surroundings):
+            see(place, aspect)
     return found
-
-
-def _is_ball(scene: Scene, place: Any) -> bool:
-    """Return whether a place is a body with a radius: what rolls in space."""
-    body = scene.bodies.get(place) if isinstance(place, str) else None
-    return body is not None and body.radius is not None
-
-
-def _concentric(scene: Scene, numerals: Numerals, connection: Any) -> bool:
-    """Return whether two wheels of the plane are welded centre to centre: no direction matters then, only the turn."""
-    centres = []
-    for place in (connection.a, connection.b):
-        name, _, spot = place.partition(".") if isinstance(place, str) else ("", "", "")
-        body = scene.bodies.get(name)
-        if body is None or body.inertia is None or spot not in ("", "centre"):
-            return False
-        centres.append(numerals.vector(body.at, ("bodies", name, "at"), 2))
-    return all(is_zero(x - y) for x, y in zip(*centres, strict=True))
 
 
 def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None:

@@ -19,7 +19,7 @@ from core.multibody.algebra.polynomials import (
     is_zero,
     product,
 )
-from core.multibody.language.connections import GROUND
+from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures

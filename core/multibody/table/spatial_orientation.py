@@ -10,9 +10,9 @@ from flint import arb, arb_mat
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import cross
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, LinearForm, combined, constant, coordinate, dot, is_zero
+from core.multibody.language.body import SceneBody
 from core.multibody.language.inertia import symmetry_axes, three_vectors
 from core.multibody.language.numerals import Numerals
-from core.multibody.language.scene import SceneBody
 from core.multibody.table.frames import Frame, Given
 from core.multibody.table.table import Row, Table
 

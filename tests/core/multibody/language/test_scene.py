@@ -10,9 +10,11 @@ from typing import Any
 import pytest
 
 from core.errors import InvalidParameter
-from core.multibody.language.connections import KINDS, Rod
+from core.multibody.language.body import SceneBody
+from core.multibody.language.joints import Rod
+from core.multibody.language.kinds import KINDS
 from core.multibody.language.reading import scene_from
-from core.multibody.language.scene import Scene, SceneBody
+from core.multibody.language.scene import Scene
 from core.multibody.solve import solve_scene
 
 BODY = {"mass": 1, "at": [0, -1]}

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from core.bodies import Cuboid
-from core.multibody.language.connections import Pin
-from core.multibody.language.scene import Scene, SceneBody
+from core.multibody.language.body import SceneBody
+from core.multibody.language.joints import Pin
+from core.multibody.language.scene import Scene
 from core.multibody.solve import solve_scene
 from tests.core.multibody.oracles import integrated
 from tests.core.multibody.worked_examples import column, force, linear, points, read

@@ -1,0 +1,102 @@
+"""What all kinds of connections of described scenes have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import Field, dataclass
+from typing import Any, ClassVar, Literal
+
+from core.multibody.algebra.polynomials import is_zero
+from core.multibody.language.body import SceneBody
+from core.multibody.language.numerals import Numerals
+from core.multibody.language.written import Place
+
+Aspect = Literal["turn", "direction", "orientation"]
+"""What a connection needs of a body beside its places: its angle, its axes in the plane, its axes in space."""
+
+ATTITUDE: tuple[Aspect, ...] = ("direction", "orientation")
+"""The axes of a body, in the plane or in space."""
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The bodies among which a connection stands.
+
+    Attributes
+    ----------
+    bodies : mapping of str to SceneBody
+    numerals : Numerals
+    plane : bool
+        Whether the scene is one of the plane.
+    """
+
+    bodies: Mapping[str, SceneBody]
+    numerals: Numerals
+    plane: bool
+
+    def rim(self, place: object) -> bool:
+        """Return whether a place is a body with a radius: a drum or wheel of the plane, a ball of space."""
+        body = self.bodies.get(place) if isinstance(place, str) else None
+        return body is not None and body.radius is not None
+
+    def concentric(self, a: object, b: object) -> bool:
+        """Return whether two bodies of the plane have one centre, at which a connection joins them."""
+        if not self.plane:
+            return False
+        centres = []
+        for place in (a, b):
+            name, _, spot = place.partition(".") if isinstance(place, str) else ("", "", "")
+            body = self.bodies.get(name)
+            if body is None or body.inertia is None or spot not in ("", "centre"):
+                return False
+            centres.append(self.numerals.vector(body.at, ("bodies", name, "at"), 2))
+        return all(is_zero(x - y) for x, y in zip(*centres, strict=True))
+
+
+class Connection:
+    """What ties bodies to one another and to the ground; `name` is by default its kind and number."""
+
+    kind: ClassVar[str]
+    # Every kind is a dataclass; here a field would come before those of the kinds.
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    name: str | None
+
+    everywhere = False
+    """Whether it acts on every body of a scene, and joins none to another."""
+
+    continues = True
+    """Whether a scene with it goes on where a string becomes slack, rather than ends there."""
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether it may act on one side only, so that touch and lift-off are events of the motion."""
+        return False
+
+    def places(self) -> Iterable[object]:
+        """Return the places and bodies that it names, as they were written; None for one that it leaves out."""
+        return ()
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """Return what it needs to know of bodies beside their places: a place of each, as written, and the aspect."""
+        return ()
+
+
+class TwoEnded(Connection):
+    """What is between two places or two bodies."""
+
+    a: Place
+    b: Place
+
+    def places(self) -> Iterable[object]:
+        """See `Connection.places`."""
+        return (self.a, self.b)
+
+
+def carrier_of(on: object) -> object:
+    """Return the place of a surface ``{at, ...}`` as it was written; None of what is no surface."""
+    return on.get("at") if isinstance(on, Mapping) else None
+
+
+def listed(through: object) -> Iterable[Any]:
+    """Return the places of a list as it was written; nothing of what is no list."""
+    return through if isinstance(through, (list, tuple)) else ()

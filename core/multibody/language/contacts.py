@@ -1,0 +1,84 @@
+"""Connections by touch: rolling without slip, and contacts that push and do not pull."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, carrier_of
+from core.multibody.language.written import Number, Place
+
+
+class Touching(Connection):
+    """What touches a surface of the ground or of a body: `place` touches `on`, or `a` touches `b`."""
+
+    place: Place | None
+    on: Mapping[str, Any] | None
+    a: Place | None
+    b: Place | None
+
+    def turns(self, place: object, surroundings: Surroundings) -> bool:
+        """Return whether the slip at a place depends on the turn of its body."""
+        raise NotImplementedError
+
+    def places(self) -> Iterable[object]:
+        """See `Connection.places`."""
+        return (self.place, self.a, self.b, carrier_of(self.on))
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        for aspect in ATTITUDE:
+            yield carrier_of(self.on), aspect
+        for place in (self.place, self.a, self.b):
+            if self.turns(place, surroundings):
+                yield place, "turn"
+
+
+@dataclass(frozen=True)
+class Rolling(Touching):
+    """A rim rolls without slip: `place` on a face or circle `on`, or body `a` on body `b`, or `inside` it."""
+
+    place: str | None = None
+    on: Mapping[str, Any] | None = None
+    a: str | None = None
+    b: str | None = None
+    inside: bool = False
+    name: str | None = None
+    kind: ClassVar[str] = "rolling"
+
+    def turns(self, place: object, surroundings: Surroundings) -> bool:
+        """See `Touching.turns`."""
+        return True
+
+
+@dataclass(frozen=True)
+class Contact(Touching):
+    """What touches pushes and does not pull.
+
+    `place`, a point or a body with a rim, does not pass `on`: a face ``{at, slope}``, free on the left of its slope, or
+    a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. In space a face is a plane
+    ``{at, normal}``, free on the side of its normal, and a circle is a sphere. Or `a` does not pass `b`, of which one
+    has a rim at least. Or with `measure` "turn", the turn of `a` relative to `b` stays `at_least` or
+    `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order` says, where several
+    impacts at once leave their outcome open, in which order they happen: those of equal order together.
+    """
+
+    place: Place | None = None
+    on: Mapping[str, Any] | None = None
+    a: Place | None = None
+    b: Place | None = None
+    measure: Literal["gap", "turn"] = "gap"
+    at_least: Number | None = None
+    at_most: Number | None = None
+    friction: Number | Sequence[Number] | None = None
+    restitution: Number | None = None
+    order: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "contact"
+
+    one_sided = True
+
+    def turns(self, place: object, surroundings: Surroundings) -> bool:
+        """See `Touching.turns`; in space a ball alone has friction that turns it."""
+        return surroundings.plane or (self.friction is not None and surroundings.rim(place))

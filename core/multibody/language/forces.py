@@ -1,0 +1,145 @@
+"""Connections that pull or drive: springs, attraction, dampers, motors, spinning frames, constant forces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from core.multibody.language.connection import Aspect, Connection, Surroundings, TwoEnded
+from core.multibody.language.written import GROUND, Number, Place, Vector
+
+
+@dataclass(frozen=True)
+class Spring(TwoEnded):
+    """A linear spring between two places (N/m); unstretched at the start unless a rest length is given."""
+
+    a: Place
+    b: Place
+    stiffness: Number
+    rest_length: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "spring"
+
+
+@dataclass(frozen=True)
+class TorsionSpring(TwoEnded):
+    """A linear spring between the turns of two bodies, or of one and the ground (N m/rad), in the plane."""
+
+    a: str
+    stiffness: Number
+    b: str = GROUND
+    rest_angle: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "torsion-spring"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(self.a, "turn"), (self.b, "turn")]
+
+
+@dataclass(frozen=True)
+class Gravitation(TwoEnded):
+    """Two bodies attract one another by their masses, as their centres do: constant m_a m_b/r^2."""
+
+    a: str
+    b: str
+    constant: Number = "6.6743e-11"
+    name: str | None = None
+    kind: ClassVar[str] = "gravitation"
+
+
+@dataclass(frozen=True)
+class InverseSquare(TwoEnded):
+    """Two places attract one another by strength/r^2 (N m^2); a negative strength repels, as equal charges do."""
+
+    a: Place
+    b: Place
+    strength: Number
+    name: str | None = None
+    kind: ClassVar[str] = "inverse-square"
+
+
+@dataclass(frozen=True)
+class Damper(TwoEnded):
+    """A force against the rate of a distance (N s/m), or with `measure` "turn" against that of a turn (N m s)."""
+
+    a: Place
+    coefficient: Number
+    b: Place = GROUND
+    measure: Literal["length", "turn"] = "length"
+    name: str | None = None
+    kind: ClassVar[str] = "damper"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        if self.measure != "turn":
+            return ()
+        return [(self.a, "turn"), (self.b, "turn")]
+
+
+@dataclass(frozen=True)
+class Motor(TwoEnded):
+    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), in the plane."""
+
+    a: str
+    rate: Number
+    b: str = GROUND
+    name: str | None = None
+    kind: ClassVar[str] = "motor"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(self.a, "turn"), (self.b, "turn")]
+
+
+@dataclass(frozen=True)
+class SpinningFrame(Connection):
+    """The scene is seen from a frame that spins (rad/s).
+
+    In space about the vertical through `at`. In the plane about the vertical in the plane, unless `about` is "normal".
+    """
+
+    rate: Number
+    at: Vector | None = None
+    about: Literal["vertical", "normal"] = "vertical"
+    name: str | None = None
+    kind: ClassVar[str] = "spinning-frame"
+
+    everywhere = True
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return () if surroundings.plane else [(name, "orientation") for name in surroundings.bodies]
+
+
+@dataclass(frozen=True)
+class Force(Connection):
+    """A constant force on a place (N)."""
+
+    place: Place
+    force: Vector
+    name: str | None = None
+    kind: ClassVar[str] = "force"
+
+    def places(self) -> Iterable[object]:
+        """See `Connection.places`."""
+        return (self.place,)
+
+
+@dataclass(frozen=True)
+class Torque(Connection):
+    """A constant torque on a body (N m): a number in the plane, a vector in space."""
+
+    body: str
+    torque: Number | Vector
+    name: str | None = None
+    kind: ClassVar[str] = "torque"
+
+    def places(self) -> Iterable[object]:
+        """See `Connection.places`."""
+        return (self.body,)
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(self.body, "turn" if surroundings.plane else "orientation")]

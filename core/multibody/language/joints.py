@@ -1,0 +1,102 @@
+"""Connections that hold places or bodies to one another: pins, welds, sliders, rods, tracks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, carrier_of
+from core.multibody.language.written import Number, Place, Vector
+
+
+@dataclass(frozen=True)
+class Pin(TwoEnded):
+    """Two places coincide; in space, with an `axis`, the bodies turn about it only."""
+
+    a: Place
+    b: Place
+    axis: Vector | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "pin"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        if self.axis is None:
+            return ()
+        return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
+
+
+@dataclass(frozen=True)
+class BallJoint(TwoEnded):
+    """Two places coincide, in space."""
+
+    a: Place
+    b: Place
+    name: str | None = None
+    kind: ClassVar[str] = "ball-joint"
+
+
+@dataclass(frozen=True)
+class Weld(TwoEnded):
+    """Two bodies move as one; their position to each other is that of the start."""
+
+    a: Place
+    b: Place
+    name: str | None = None
+    kind: ClassVar[str] = "weld"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        if surroundings.concentric(self.a, self.b):
+            return [(self.a, "turn"), (self.b, "turn")]
+        return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
+
+
+@dataclass(frozen=True)
+class Slider(TwoEnded):
+    """Place `a` stays on a line through place `b`, fixed in the body of `b`; the bodies do not turn to each other."""
+
+    a: Place
+    b: Place
+    slope: Number | None = None
+    direction: Vector | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "slider"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
+
+
+@dataclass(frozen=True)
+class Rod(TwoEnded):
+    """Two places stay at a distance: the one they start at, unless a length is given."""
+
+    a: Place
+    b: Place
+    length: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "rod"
+
+
+@dataclass(frozen=True)
+class Track(Connection):
+    """A place stays on a curve or surface.
+
+    `on` is a line ``{at, slope}`` (in space ``{at, direction}``), a circle or sphere ``{at, radius}``, a parabola
+    ``{at, curvature, slope}`` (y = curvature x^2/2 from its vertex), in space a plane ``{at, normal}``.
+    """
+
+    place: Place
+    on: Mapping[str, Any]
+    name: str | None = None
+    kind: ClassVar[str] = "track"
+
+    def places(self) -> Iterable[object]:
+        """See `Connection.places`."""
+        return (self.place, carrier_of(self.on))
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(carrier_of(self.on), aspect) for aspect in ATTITUDE]

@@ -1,0 +1,53 @@
+"""The catalogue of the kinds of connections."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from core.multibody.language.connection import Connection
+from core.multibody.language.contacts import Contact, Rolling
+from core.multibody.language.forces import (
+    Damper,
+    Force,
+    Gravitation,
+    InverseSquare,
+    Motor,
+    SpinningFrame,
+    Spring,
+    Torque,
+    TorsionSpring,
+)
+from core.multibody.language.joints import BallJoint, Pin, Rod, Slider, Track, Weld
+from core.multibody.language.strings import Chain, String
+
+KINDS: Mapping[str, type[Connection]] = MappingProxyType(
+    {
+        cls.kind: cls
+        for cls in (
+            Pin,
+            BallJoint,
+            Weld,
+            Slider,
+            Rod,
+            Rolling,
+            Track,
+            Contact,
+            String,
+            Chain,
+            Spring,
+            TorsionSpring,
+            Gravitation,
+            InverseSquare,
+            Damper,
+            Motor,
+            SpinningFrame,
+            Force,
+            Torque,
+        )
+    }
+)
+"""The kinds that a description may name."""
+
+NOT_YET = ("impulse",)
+"""Kinds that the language foresees and that no model answers yet."""
