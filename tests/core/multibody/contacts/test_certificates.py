@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import arb
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from core.errors import BudgetExceeded
@@ -15,6 +17,8 @@ from core.multibody.contacts.certificates import certificates
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import kinds, states
 from tests.core.multibody.worked_examples import column, linear, read
+
+SIGNS = st.sampled_from([1, -1])
 
 
 @pytest.mark.parametrize("trial", range(60))
@@ -76,9 +80,15 @@ def largest_pull(cosine: float, frictions: tuple[float, float], way: int) -> flo
     return float(most.x[4]) if rest.success else None
 
 
-@pytest.mark.parametrize("cosine", [0.28, 0.6, "5/13", "8/17"])
-@pytest.mark.parametrize("frictions", [(0.3, 0.3), (0.5, 0.5), (0.9, 0.2), (0.35, 1.2)])
-@pytest.mark.parametrize("way", [1, -1])
+ROUGH = st.integers(10, 120).map(lambda x: x / 100)
+
+
+@settings(max_examples=20)
+@given(st.sampled_from([0.28, 0.6, "5/13", "8/17"]) | ROUGH.map(lambda x: x / 1.5), st.tuples(ROUGH, ROUGH), SIGNS)
+@example("8/17", (0.3, 0.3), 1)
+@example(0.28, (0.5, 0.5), -1)
+@example(0.6, (0.9, 0.2), 1)
+@example("5/13", (0.35, 1.2), -1)
 def test_a_ladder_rests_as_long_as_some_share_is_admissible(
     cosine: Any, frictions: tuple[float, float], way: int
 ) -> None:
@@ -172,13 +182,16 @@ def test_a_bar_on_several_equally_rough_places_rests(places: str, friction: floa
     assert not any(answer.forces[f"{name}.friction"].determined for name in places)
 
 
-@pytest.mark.parametrize("places", ["lr", "lmr", "lmnr"])
-@pytest.mark.parametrize(("friction", "slope"), [(0.3, 0.0), (0.4, 0.2), (0.5, -0.3)])
+@settings(max_examples=10)
+@given(st.sampled_from(["lr", "lmr", "lmnr"]), ROUGH, st.integers(-90, 40).map(lambda x: x / 100))
+@example("lmr", 0.3, 0.0)
+@example("lmnr", 0.5, -0.3)
 def test_a_bar_slides_to_a_stop_on_several_equally_rough_places(places: str, friction: float, slope: float) -> None:
-    """It stops after v/(g (mu cos + sin)), and stays."""
-    answer = solve_scene(read(bar(places, friction, 1.5, f"atan({slope})")), [2.0])
+    """It stops after v/(g (mu cos + sin)), and stays; a steeper slope than that of friction would let it go on."""
+    assume(-0.9 * friction < slope < friction)
     cosine = 1 / math.hypot(1, slope)
     stop = 1.5 / (10 * cosine * (friction + slope))
+    answer = solve_scene(read(bar(places, friction, 1.5, f"atan({slope})")), [1.5 * stop])
     assert answer.problem is None
     assert kinds(answer) == [("stick", name) for name in places]
     for event in answer.events:

@@ -11,6 +11,8 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.solve import solve_scene
@@ -375,9 +377,15 @@ def test_a_rod_lands_after_many_turns() -> None:
         assert abs(event.time - root) <= event.error < 1e-14
 
 
-@pytest.mark.parametrize("rate", [2, -0.7])
-@pytest.mark.parametrize("restitution", [0, 0.4, 1])
-@pytest.mark.parametrize(("along", "angle"), [(1.118033988749895, 0.4636476090008061), (0.3, 1.1)])
+@settings(max_examples=10)
+@given(
+    st.sampled_from([2, -0.7, 5]),
+    st.sampled_from([0, 0.4, 1]),
+    st.integers(1, 20).map(lambda x: x / 10),
+    st.integers(1, 15).map(lambda x: x / 10),
+)
+@example(2, 0.4, 1.118033988749895, 0.4636476090008061)
+@example(-0.7, 0, 0.3, 1.1)
 def test_what_a_motor_strikes_takes_the_work_of_the_motor(
     rate: float, restitution: float, along: float, angle: float
 ) -> None:

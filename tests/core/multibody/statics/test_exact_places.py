@@ -7,6 +7,8 @@ from typing import Any
 
 import mpmath
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 from mpmath import mpf
 
 from core.multibody.answer import Equilibrium
@@ -51,8 +53,10 @@ def check(one: Equilibrium, body: str, place: tuple[Any, ...], square: Any, wide
         assert abs(mpf(value) - exact) <= error <= widest * max(1.0, float(exact))
 
 
-@pytest.mark.parametrize("above", ["0.3", "1e-2", "1e-5", "1e-8", "1e-12", "1e-20"])
-@pytest.mark.parametrize("start", [(0.6, -0.8), (0, -1)])
+@settings(max_examples=10)
+@given(st.integers(1, 19).map(lambda n: f"{n}e-{n}"), st.sampled_from([(0.6, -0.8), (0, -1)]))
+@example("1e-20", (0, -1))
+@example("1e-5", (0.6, -0.8))
 def test_a_bead_just_above_its_critical_rate_has_four_places(above: str, start: tuple[float, float]) -> None:
     """cos(theta) = g/(R Omega^2): at 1e-20 above the tilted places are 2e-10 from the lowest one, which is unstable."""
     square = G * (1 + mpf(above)) ** 2
