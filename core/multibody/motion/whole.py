@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from core.arrays import Floats
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
@@ -244,10 +244,29 @@ class Whole:
 
     def largest_multipliers(self, multipliers: Floats) -> Floats:
         """Return the largest of multipliers of shape (t, rows), in the units of the kernels, as one of each row."""
+        powers = self._powers
+        return self._of_each_row(float(np.max(np.ldexp(np.abs(multipliers), -powers[None, :]), initial=0.0)))
+
+    def largest_forces(self, q: Floats, v: Floats) -> Floats:
+        """Return the largest term of the forces that multipliers balance at states, as one multiplier of each row."""
+        units, table = self.arrays[1], self.measures.table
+        place, rate = (np.max(np.abs(x[..., 0]), axis=0, initial=0.0) for x in (q, v))
+        terms = [(i, abs(float(x))) for i, x in table.load.items()]
+        terms += [(i, abs(float(x)) * place[j]) for (i, j), x in table.stiffness.items()]
+        terms += [(i, abs(float(x)) * rate[j]) for (i, j), x in table.damping.items()]
+        terms += [(i, abs(float(x)) * place[j] * rate[k]) for (i, j, k), x in table.gyration.items()]
+        power = 2 * units.time - units.action
+        return self._of_each_row(max((float(np.ldexp(x, units.lengths[i] + power)) for i, x in terms), default=0.0))
+
+    @property
+    def _powers(self) -> Integers:
+        """Exponents of two of the multiplier of every row."""
         units = self.arrays[1]
-        powers = np.array([units.multiplier(row) for row in range(multipliers.shape[1])], dtype=np.int64)
-        largest = np.max(np.ldexp(np.max(np.abs(multipliers), axis=0, initial=0.0), -powers), initial=0.0)
-        found: Floats = np.ldexp(largest, powers)
+        return np.array([units.multiplier(row) for row in range(len(self.measures.table.rows))], dtype=np.int64)
+
+    def _of_each_row(self, size: float) -> Floats:
+        """Return a size in the units of the kernels as a multiplier of each row."""
+        found: Floats = np.ldexp(size, self._powers)
         return found
 
     def accelerations(self, q: Floats, v: Floats) -> Floats:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -99,23 +99,35 @@ class Columns:
         """Return forces of connections in time."""
         q, v = self.states.q, self.states.v
         multipliers = self.whole.multipliers(q, v)
-        # What should be zero is known no better than the largest of what is solved for with it.
-        floors = _SOLVED * self.whole.largest_multipliers(multipliers)
+        # What should be zero is known no better than the largest of what is solved for with it and of what it balances.
+        solved = self.whole.largest_multipliers(multipliers)
+        balanced = np.maximum(solved, self.whole.largest_forces(q, v))
         by_reference = None
         if self.states.reference is not None:
             by_reference = (*self.states.reference, self.whole.multipliers(*self.states.reference))
         moved = self._moved(len(chosen), lambda q, v: self._forces(chosen, q, v))
         found: dict[str, Column] = {}
+        sizes: dict[str, float] = {}
         for k, force in enumerate(chosen):
             values, size = self.whole.force(force, q, v, multipliers)
-            floor = sum(float(floors[row] * np.max(values_of(poly, q)[1], initial=0.0)) for row, poly in force.terms)
-            error = _SMALL * float(np.max(size, initial=0.0)) + floor + float(moved[k])
+            sizes[force.name] = float(np.max(size, initial=0.0))
+            factors = [(row, float(np.max(values_of(poly, q)[1], initial=0.0))) for row, poly in force.terms]
+            beside = sum(float(solved[row]) * factor for row, factor in factors)
+            floor = sum(float(balanced[row]) * factor for row, factor in factors)
+            error = _SMALL * sizes[force.name] + _SOLVED * floor + float(moved[k])
+            sizes[force.name] = max(sizes[force.name], floor)
             if by_reference is not None:
                 other = self.whole.force(force, *by_reference)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
             # A force that is zero by symmetry is known as a share of those that are solved for with it.
             small = error > ROUNDED * float(np.max(np.abs(values), initial=0.0))
-            found[force.name] = Column(values, force.unit, error, self.how, scale=floor / _SOLVED if small else None)
+            found[force.name] = Column(values, force.unit, error, self.how, scale=beside if small else None)
+        for unit in {column.unit for column in found.values()}:
+            alike = {name: column for name, column in found.items() if column.unit == unit}
+            if max(column.largest for column in alike.values()) <= max(column.error for column in alike.values()):
+                # Where all forces are zero they are known as shares of the terms that cancel.
+                for name, column in alike.items():
+                    found[name] = replace(column, scale=max(column.scale or 0.0, sizes[name]))
         return found
 
     def _forces(self, chosen: Sequence[Force], q: Floats, v: Floats) -> Floats:

@@ -116,3 +116,36 @@ def test_the_angle_of_a_rod_goes_on_without_jumps_however_often_it_swings_or_tur
     w = found["angular_velocity"]
     gained = (w[:-2:2] + 4.0 * w[1:-1:2] + w[2::2]) * (0.1 / 3.0)
     assert np.allclose(np.diff(found["angle"][::2]), gained, rtol=0.0, atol=0.1)
+
+
+SLOPES = ["0", "atan(3/4)", "pi/7", {"degrees": 30}]
+
+
+@pytest.mark.parametrize("rest", ["0.91", "91/300", "sqrt(2)/3"])
+@pytest.mark.parametrize("slope", SLOPES, ids=str)
+@pytest.mark.parametrize("stiffness", ["20", "1e9/3"])
+def test_forces_that_all_vanish_are_answered(rest: str, slope: Any, stiffness: str) -> None:
+    """Without gravity, at the rest length of a spring, terms cancel: what is left is rounding, in every unit."""
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {"b": {"mass": "1/3", "at": [0, f"-({rest})"]}},
+        "connections": [
+            {"kind": "track", "place": "b", "on": {"at": [0, f"-({rest})"], "slope": slope}},
+            {"kind": "spring", "name": "s", "a": "b", "b": [0, 0], "stiffness": stiffness, "rest_length": rest},
+            {"kind": "contact", "place": "b", "on": {"at": [0, f"-({rest})"]}, "friction": 0.4},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.3, 1.0], EVERY_COLUMN, 1e-12)
+    motion = answer.trajectory
+    assert motion is not None
+    for name, one in motion.columns.items():
+        if name != "b.position" and one.unit != "J":
+            assert one.largest <= one.error, name
+    found = column(answer, "s.force")
+    assert found.error <= 2e-15 * quotient(stiffness)
+
+
+def quotient(formula: str) -> float:
+    """Return a quotient of two numbers, or one."""
+    over, _, under = formula.partition("/")
+    return float(over) / float(under or 1)
