@@ -54,6 +54,7 @@ class Cluster:
         if settings.dask:
             self.client = Client(settings.dask, timeout=CONNECTING, name="polhode")
             return self.client
+        from distributed.security import Security
         from distributed.system import MEMORY_LIMIT
 
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -70,7 +71,11 @@ class Cluster:
                 "distributed.worker.http.routes": ["distributed.http.health"],
             }
         )
+        # Whoever connects to a Dask process runs code in it: every connection needs the certificate that is made
+        # here for this cluster, and that only its processes are given.
+        security = Security.temporary()
         self._local = LocalCluster(
+            security=security,
             n_workers=workers,
             threads_per_worker=1,
             memory_limit=memory // workers,
@@ -78,7 +83,7 @@ class Cluster:
             local_directory=str(self._scratch),
             silence_logs=logging.CRITICAL,
         )
-        self.client = Client(self._local, direct_to_workers=True)
+        self.client = Client(self._local, direct_to_workers=True, security=security)
         return self.client
 
     @property

@@ -1,0 +1,74 @@
+"""The cluster of this machine: nobody but the service can connect to it."""
+
+from __future__ import annotations
+
+import socket
+import ssl
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from distributed import Client
+from distributed.security import Security
+
+from service.settings import Settings
+from service.studies.cluster import Cluster
+
+PATIENCE = "5s"
+"""A refusal comes at once; one that does not come is a failure of the test."""
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    made = Cluster(Settings(study_workers=1), tmp_path_factory.mktemp("scratch"))
+    made.open()
+    yield made
+    made.close()
+
+
+def addresses(cluster: Cluster) -> list[str]:
+    """Return the addresses of all processes that accept connections."""
+    described: dict[str, Any] = cluster.client.scheduler_info(n_workers=-1)
+    found: list[str] = []
+    for address, worker in described["workers"].items():
+        found += [address, worker["nanny"]]
+    return [described["address"], *found]
+
+
+def test_it_computes(cluster: Cluster) -> None:
+    assert cluster.connected
+    assert cluster.client.submit(divmod, 17, 5).result(timeout=30) == (3, 2)
+
+
+def test_every_address_is_encrypted(cluster: Cluster) -> None:
+    found = addresses(cluster)
+    assert len(found) == 3
+    assert all(address.startswith("tls://127.0.0.1:") for address in found)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_nobody_without_its_certificate_is_admitted(cluster: Cluster) -> None:
+    scheduler = addresses(cluster)[0]
+    with pytest.raises(OSError, match=r"(Timed out|SSL|TLS|reset|closed)"):
+        Client(scheduler.replace("tls:", "tcp:"), timeout=PATIENCE)
+    # A certificate of the same kind that another authority has signed.
+    with pytest.raises(OSError, match=r"(Timed out|SSL|TLS|reset|closed)"):
+        Client(scheduler, security=Security.temporary(), timeout=PATIENCE)
+
+
+def closed_to_strangers(address: str) -> bool:
+    """Return whether a process sends nothing, and ends the connection, to a client without a certificate."""
+    context = ssl.create_default_context()
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    host, port = address.removeprefix("tls://").split(":")
+    with socket.create_connection((host, int(port)), timeout=10) as plain:
+        try:
+            # In TLS 1.3 the refusal comes with the first bytes that are read. Dask speaks first where it accepts.
+            with context.wrap_socket(plain) as secure:
+                return secure.recv(1) == b""
+        except (ssl.SSLError, ConnectionError):
+            return True
+
+
+def test_each_process_demands_a_certificate(cluster: Cluster) -> None:
+    assert [closed_to_strangers(address) for address in addresses(cluster)] == [True, True, True]
