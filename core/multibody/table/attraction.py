@@ -6,17 +6,18 @@ exceeds degree two, and the multipliers of the two rows carry the pull k w^2 to 
 
 from __future__ import annotations
 
-from typing import Any
-
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import Ball, entry, is_zero
+from core.multibody.language.forces import Gravitation, InverseSquare
 from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
+from core.multibody.table.rows import add_rows
 from core.near_names import near_and_all
 
 
-def gravitation(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def gravitation(connection: Gravitation, measures: Measures, name: str, path: Path) -> None:
     """Let two bodies attract one another by their masses.
 
     Raises
@@ -41,7 +42,8 @@ def gravitation(measures: Measures, name: str, connection: Any, path: Path) -> N
     _attract(measures, name, (point(connection.a, path), point(connection.b, path)), strength, path)
 
 
-def inverse_square(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def inverse_square(connection: InverseSquare, measures: Measures, name: str, path: Path) -> None:
     """Let two places attract one another by a strength over the square of their distance.
 
     Raises

@@ -15,7 +15,6 @@ To turn from one side to the other, what passes the peg takes rho z'^2 of it: th
 from __future__ import annotations
 
 from math import inf
-from typing import Any
 
 from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.algebra.directions import unit
@@ -32,10 +31,12 @@ from core.multibody.algebra.polynomials import (
     is_zero,
 )
 from core.multibody.language.scene import Scene
+from core.multibody.language.strings import Chain
 from core.multibody.table.connection_effects import Force, Limit
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.momenta import StateFunction
+from core.multibody.table.rows import add_rows
 
 
 def has_chain(scene: Scene) -> bool:
@@ -43,7 +44,8 @@ def has_chain(scene: Scene) -> bool:
     return not all(connection.continues for connection in scene.connections)
 
 
-def chain(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def chain(connection: Chain, measures: Measures, name: str, path: Path) -> None:
     """Add the coordinate, the rows and the forces of a chain.
 
     Raises
@@ -116,7 +118,7 @@ def _require_alone(measures: Measures, path: Path) -> None:
             )
 
 
-def _places(measures: Measures, connection: Any, path: Path) -> tuple[Point, Point, Point]:
+def _places(measures: Measures, connection: Chain, path: Path) -> tuple[Point, Point, Point]:
     through = connection.through
     if not isinstance(through, (list, tuple)) or len(through) != 3:
         raise InvalidParameter((*path, "through"), "be a list of three places: an end, the peg and the other end")

@@ -23,6 +23,8 @@ from core.multibody.algebra.polynomials import (
     dot,
     is_zero,
 )
+from core.multibody.language.contacts import Contact
+from core.multibody.language.strings import String
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.contact_geometry_in_space import contact_in_space
@@ -30,9 +32,11 @@ from core.multibody.table.contact_places import gap_of_rims, is_on, place_on, re
 from core.multibody.table.frames import Frame, Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.rows import add_rows
 
 
-def contact(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def contact(connection: Contact, measures: Measures, name: str, path: Path) -> None:
     """Add the unilateral measure of a contact.
 
     Raises
@@ -78,7 +82,7 @@ def contact(measures: Measures, name: str, connection: Any, path: Path) -> None:
     )
 
 
-def bounciness(measures: Measures, connection: Any, path: Path) -> tuple[Ball, Ball | None]:
+def bounciness(measures: Measures, connection: Contact | String, path: Path) -> tuple[Ball, Ball | None]:
     """Return coefficient of restitution and place in the order of simultaneous impacts."""
     restitution, order = ZERO, None
     if connection.restitution is not None:
@@ -110,7 +114,7 @@ def _friction(measures: Measures, value: Any, path: Path) -> tuple[Ball, Ball]:
     return static, kinetic
 
 
-def _turn(measures: Measures, connection: Any, path: Path) -> Poly:
+def _turn(measures: Measures, connection: Contact, path: Path) -> Poly:
     for entry in ("place", "on"):
         if getattr(connection, entry) is not None:
             raise InvalidParameter((*path, entry), 'be left out where the measure is "turn"')
@@ -156,7 +160,7 @@ def _sum(*rates: LinearForm) -> LinearForm:
     return {j: poly for j, poly in found.items() if poly}
 
 
-def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, LinearForm, bool]:
+def _on(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> tuple[Poly, LinearForm, bool]:
     (point, radius, frame), at, on = place_on(measures, connection, path)
     where, keys = (*path, "on"), set(on)
     rolls = _rolls(frame)
@@ -193,7 +197,7 @@ def unit_in_plane(measures: Measures, value: Any, path: Path) -> list[Ball]:
     return [x / size, y / size]
 
 
-def _between(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, LinearForm, bool]:
+def _between(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> tuple[Poly, LinearForm, bool]:
     a, b = two_rims(measures, connection, path)
     rolls = _rolls(a[2]) or _rolls(b[2])
     if not rolls:

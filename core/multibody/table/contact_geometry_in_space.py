@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import cross, perpendicular, unit
 from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.language.contacts import Contact
 from core.multibody.table.contact_places import Rim, gap_of_rims, is_on, place_on, refuse_limits, two_rims
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
@@ -38,7 +38,7 @@ class Touching:
     rolls: bool
 
 
-def contact_in_space(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> Touching:
+def contact_in_space(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> Touching:
     """Return gap and slip of a contact in space.
 
     Raises
@@ -55,7 +55,7 @@ def contact_in_space(measures: Measures, connection: Any, path: Path, *, rubs: b
     return _round(first, second, path, rubs=rubs)
 
 
-def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> Touching:
+def _on(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> Touching:
     (point, radius, frame), at, on = place_on(measures, connection, path)
     where = (*path, "on")
     if set(on) == {"radius"}:

@@ -7,6 +7,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.language.contacts import Contact
 from core.multibody.table.frames import Frame, Point
 from core.multibody.table.measures import Measures
 
@@ -14,14 +15,14 @@ Rim = tuple[Point, Ball, Frame | None]
 """Centre and radius of a body with a rim and its frame, or a place with the radius 0."""
 
 
-def refuse_limits(connection: Any, path: Path) -> None:
+def refuse_limits(connection: Contact, path: Path) -> None:
     """Raise `InvalidParameter` where a gap has the limits of a turn."""
     for entry in ("at_least", "at_most"):
         if getattr(connection, entry) is not None:
             raise InvalidParameter((*path, entry), 'be left out where the measure is no "turn"')
 
 
-def is_on(connection: Any, path: Path, also: str = "") -> bool:
+def is_on(connection: Contact, path: Path, also: str = "") -> bool:
     """Return whether a place touches a face or a circle; otherwise two rims touch.
 
     Raises
@@ -44,7 +45,7 @@ def rim(measures: Measures, place: Any, path: Path) -> Rim:
     return point, ZERO if frame is None or frame.radius is None else frame.radius, frame
 
 
-def place_on(measures: Measures, connection: Any, path: Path) -> tuple[Rim, Point, Mapping[str, Any]]:
+def place_on(measures: Measures, connection: Contact, path: Path) -> tuple[Rim, Point, Mapping[str, Any]]:
     """Return what touches, a point of what it touches, and the rest of the description of that.
 
     Raises
@@ -69,7 +70,7 @@ def place_on(measures: Measures, connection: Any, path: Path) -> tuple[Rim, Poin
     return first, at, {key: value for key, value in on.items() if key != "at"}
 
 
-def two_rims(measures: Measures, connection: Any, path: Path) -> tuple[Rim, Rim]:
+def two_rims(measures: Measures, connection: Contact, path: Path) -> tuple[Rim, Rim]:
     """Return the two rims of a contact.
 
     Raises

@@ -104,7 +104,7 @@ class Coordinates:
             return [constant(value) for value in components]
         return self._offset(self.frames[body], nothing, components, path)
 
-    def turn_of(self, body: str, path: Path) -> Poly:
+    def turn_of(self, body: Place, path: Path) -> Poly:
         """Return the angle of a body in the plane; of the ground, zero."""
         if body == GROUND:
             return {}

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from core.errors import InvalidParameter, Path
-from core.multibody.algebra.directions import perpendicular
-from core.multibody.algebra.polynomials import ONE, Poly, constant, difference, evaluated, is_zero
+from core.errors import Path
+from core.multibody.algebra.polynomials import Poly, is_zero
 from core.multibody.language.connection import Aspect, Surroundings
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
-from core.multibody.language.written import GROUND
-from core.multibody.table import attraction, laws
-from core.multibody.table.chains import chain
+from core.multibody.table import attraction, chains, contact_geometry, joints, laws, rolling_in_space, strings
 from core.multibody.table.connection_effects import WorkTerm
-from core.multibody.table.contact_geometry import contact
 from core.multibody.table.coordinates import Coordinates, dimension_of
 from core.multibody.table.measures import Measures
-from core.multibody.table.rolling import rolling
-from core.multibody.table.rolling_in_space import rolling_in_space
-from core.multibody.table.strings import string
+from core.multibody.table.rows import add_rows
+
+FORMS = (attraction, chains, contact_geometry, joints, laws, rolling_in_space, strings)
+"""The modules with the forms of `add_rows` for the kinds of the catalogue: their import registers them."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +54,7 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
     for name, (i, connection) in zip(names, scene.numbered(), strict=True):
         paths[name] = ("connections", i)
         with faults.part():
-            _connect(measures, name, connection, ("connections", i))
+            add_rows(connection, measures, name, ("connections", i))
     faults.raised()
     if "gravity" not in paths:
         measures.works.extend(_weight(measures))
@@ -99,100 +95,3 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
         for place, aspect in connection.aspects(surroundings):
             see(place, aspect)
     return found
-
-
-def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None:
-    point, kind = measures.coordinates.point, connection.kind
-    if kind == "string":
-        string(measures, name, connection, path)
-    elif kind == "chain":
-        chain(measures, name, connection, path)
-    elif kind == "rolling":
-        (rolling if measures.dimension == 2 else rolling_in_space)(measures, name, connection, path)
-    elif kind == "contact":
-        contact(measures, name, connection, path)
-    elif kind == "track":
-        measures.on_curve(name, point(connection.place, (*path, "place")), connection.on, path)
-    elif kind in ("pin", "ball-joint", "weld", "slider", "rod"):
-        for end in ("a", "b"):
-            if getattr(connection, end) == GROUND and kind != "weld":
-                raise InvalidParameter((*path, end), "be a place: of the ground, its coordinates")
-        a = point(connection.a, (*path, "a"))
-        b = a if connection.b == GROUND else point(connection.b, (*path, "b"))
-        _join(measures, name, connection, a, b, path)
-    elif kind == "spring":
-        laws.spring(measures, name, connection, path)
-    elif kind == "torsion-spring":
-        laws.torsion_spring(measures, name, connection, path)
-    elif kind == "gravitation":
-        attraction.gravitation(measures, name, connection, path)
-    elif kind == "inverse-square":
-        attraction.inverse_square(measures, name, connection, path)
-    elif kind == "damper":
-        laws.damper(measures, name, connection, path)
-    elif kind == "motor":
-        laws.motor(measures, name, connection, path)
-    elif kind == "spinning-frame":
-        laws.spinning_frame(measures, name, connection, path)
-    elif kind == "force":
-        laws.force(measures, name, connection, path)
-    elif kind == "torque":
-        laws.torque(measures, name, connection, path)
-
-
-def _join(measures: Measures, name: str, connection: Any, a: Any, b: Any, path: Path) -> None:
-    kind = connection.kind
-    if kind == "rod":
-        measures.rod(name, a, b, connection.length, path)
-    elif kind == "slider":
-        _slider(measures, name, connection, a, b, path)
-    elif kind == "weld":
-        _weld(measures, name, connection, a, b, path)
-    else:
-        if kind == "ball-joint" and measures.dimension == 2:
-            raise InvalidParameter((*path, "kind"), 'be "pin" in the plane')
-        measures.coincide(name, a, b, path)
-        if kind == "pin" and connection.axis is not None:
-            if measures.dimension == 2:
-                raise InvalidParameter((*path, "axis"), "be left out in the plane")
-            axis = measures.numerals.vector(connection.axis, (*path, "axis"), 3)
-            perpendicular(axis, (*path, "axis"))
-            frames = measures.coordinates.frames
-            for body in (a.body, b.body):
-                if body is not None and frames[body].axes is None:
-                    raise InvalidParameter((*path, "axis"), f'hold bodies that have moments, unlike "{body}"')
-            measures.aligned(name, a.body, b.body, axis, path)
-
-
-def _slider(measures: Measures, name: str, connection: Any, a: Any, b: Any, path: Path) -> None:
-    numerals, plane = measures.numerals, measures.dimension == 2
-    if a.body == b.body:
-        raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
-    if connection.direction is not None and connection.slope is not None:
-        raise InvalidParameter((*path, "slope"), "be left out where a direction is given")
-    if connection.direction is not None:
-        along = numerals.vector(connection.direction, (*path, "direction"), measures.dimension)
-    elif plane:
-        along = numerals.angle(0 if connection.slope is None else connection.slope, (*path, "slope"))
-    else:
-        raise InvalidParameter((*path, "direction"), "be given")
-    measures.slide(name, a, b, along, (*path, "direction"))
-    measures.unturned(name, a, b, path)
-
-
-def _weld(measures: Measures, name: str, connection: Any, a: Any, b: Any, path: Path) -> None:
-    """Hold the vector from one place to the other, and the orientation, as they are at the start."""
-    if connection.b == GROUND:
-        b = measures.coordinates.point([0] * measures.dimension, path)
-    if a.body == b.body:
-        raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
-    carrier = b if b.body is not None and measures.coordinates.frames[b.body].orients else a
-    other = a if carrier is b else b
-    d = [difference(x, y) for x, y in zip(other.at, carrier.at, strict=True)]
-    start = [evaluated(x, measures.table.q) for x in d]
-    arm = measures.coordinates.vector_of(carrier.body, measures.in_body(carrier.body, start), path)
-    sign = ONE if carrier is b else -ONE
-    for axis, x, y in zip("xyz", d, arm, strict=False):
-        row = measures.hold(name, difference(x, y))
-        measures.force(f"{name}.{axis}", [(row, constant(sign))])
-    measures.unturned(name, a, b, path)

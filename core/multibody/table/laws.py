@@ -19,16 +19,21 @@ from core.multibody.algebra.polynomials import (
     is_zero,
     product,
 )
+from core.multibody.language.connection import TwoEnded
+from core.multibody.language.forces import Damper, Motor, SpinningFrame, Spring, Torque, TorsionSpring
+from core.multibody.language.forces import Force as AppliedForce
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.rows import add_rows
 from core.multibody.table.table import Row
 from core.near_names import near_and_all
 
 
-def spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def spring(connection: Spring, measures: Measures, name: str, path: Path) -> None:
     """Add a linear spring between two places: energy k (l - l_0)^2/2."""
     a, b = _ends(measures, connection, path)
     k = _positive(measures, connection.stiffness, (*path, "stiffness"))
@@ -58,7 +63,8 @@ def spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
     measures.forces.append(Force(f"{name}.force", "N", [], pull))
 
 
-def torsion_spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def torsion_spring(connection: TorsionSpring, measures: Measures, name: str, path: Path) -> None:
     """Add a linear spring between two turns: energy k (angle - rest)^2/2."""
     k = _positive(measures, connection.stiffness, (*path, "stiffness"))
     turn = _turn(measures, connection, path)
@@ -72,7 +78,8 @@ def torsion_spring(measures: Measures, name: str, connection: Any, path: Path) -
     measures.forces.append(Force(f"{name}.torque", "N m", [], combined((-k, away))))
 
 
-def damper(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def damper(connection: Damper, measures: Measures, name: str, path: Path) -> None:
     """Add a force against the rate of a distance or of a turn."""
     c = _positive(measures, connection.coefficient, (*path, "coefficient"))
     if connection.measure == "turn":
@@ -92,7 +99,8 @@ def damper(measures: Measures, name: str, connection: Any, path: Path) -> None:
     measures.conservative = False
 
 
-def motor(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
     """Hold the rate of a turn."""
     rate = measures.numerals.number(connection.rate, (*path, "rate"))
     rates = rate_of(_turn(measures, connection, path))
@@ -115,7 +123,8 @@ def clock(measures: Measures) -> int:
     return index
 
 
-def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def spinning_frame(connection: SpinningFrame, measures: Measures, name: str, path: Path) -> None:
     """Add centrifugal and Coriolis forces: every unit vector and centre moves as particles do.
 
     Notes
@@ -158,7 +167,8 @@ def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -
             _rotating_products(measures, frame.axes, rate)
 
 
-def force(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def force(connection: AppliedForce, measures: Measures, name: str, path: Path) -> None:
     """Add a constant force on a place."""
     point = measures.coordinates.point(connection.place, (*path, "place"))
     if point.body is None:
@@ -173,7 +183,8 @@ def force(measures: Measures, name: str, connection: Any, path: Path) -> None:
     )
 
 
-def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def torque(connection: Torque, measures: Measures, name: str, path: Path) -> None:
     """Add a constant torque on a body."""
     table, body = measures.table, connection.body
     if measures.dimension == 2:
@@ -204,7 +215,7 @@ def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
     measures.conservative = False
 
 
-def _ends(measures: Measures, connection: Any, path: Path) -> tuple[Point, Point]:
+def _ends(measures: Measures, connection: TwoEnded, path: Path) -> tuple[Point, Point]:
     point = measures.coordinates.point
     if connection.b == GROUND:
         raise InvalidParameter((*path, "b"), "be given: a place, or of the ground its coordinates")
@@ -218,7 +229,7 @@ def _positive(measures: Measures, value: Any, path: Path) -> Ball:
     return number
 
 
-def _turn(measures: Measures, connection: Any, path: Path) -> Poly:
+def _turn(measures: Measures, connection: TwoEnded, path: Path) -> Poly:
     if connection.a == connection.b:
         raise InvalidParameter((*path, "b"), "be another body than a")
     turn = measures.coordinates.turn_of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from core.errors import InvalidParameter, Path
@@ -17,6 +18,7 @@ from core.multibody.algebra.polynomials import (
     dot,
     evaluated,
 )
+from core.multibody.language.contacts import Rolling
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.table import Row
@@ -43,8 +45,8 @@ def sum_of_rates(*parts: tuple[Poly, LinearForm]) -> LinearForm:
     return {j: poly for j, poly in total.items() if poly}
 
 
-def rolling(measures: Measures, name: str, connection: Any, path: Path) -> None:
-    """Add the rows of one rolling connection.
+def rolling_in_plane(measures: Measures, name: str, connection: Rolling, path: Path) -> None:
+    """Add the rows of a rim that rolls.
 
     Raises
     ------
@@ -74,10 +76,10 @@ def _rim(measures: Measures, name: Any, path: Path) -> tuple[Point, Ball, Poly]:
     return measures.coordinates.point(name, path), frame.radius, measures.coordinates.turn_of(name, path)
 
 
-def _on_ground_or_face(measures: Measures, name: str, connection: Any, path: Path) -> None:
+def _on_ground_or_face(measures: Measures, name: str, connection: Rolling, path: Path) -> None:
     rim = _rim(measures, connection.place, (*path, "place"))
     where, on = (*path, "on"), connection.on
-    if not hasattr(on, "keys") or "at" not in on:
+    if not isinstance(on, Mapping) or "at" not in on:
         raise InvalidParameter((*where, "at"), "be given")
     at = measures.coordinates.point(on["at"], (*where, "at"))
     if at.body == rim[0].body:

@@ -25,17 +25,25 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     is_zero,
 )
+from core.multibody.language.contacts import Rolling
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.frames import Point
 from core.multibody.table.laws import clock
 from core.multibody.table.measures import COMPONENTS, Measures
-from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.rolling import rate_of, rolling_in_plane, sum_of_rates
+from core.multibody.table.rows import add_rows
 from core.multibody.table.table import Row
 
 Vector = Sequence[Ball]
 
 
-def rolling_in_space(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def rolling(connection: Rolling, measures: Measures, name: str, path: Path) -> None:
+    """Add the rows of what rolls, in the plane or in space."""
+    (rolling_in_plane if measures.dimension == 2 else rolling_in_space)(measures, name, connection, path)
+
+
+def rolling_in_space(measures: Measures, name: str, connection: Rolling, path: Path) -> None:
     """Add the rows of a ball that rolls.
 
     Raises

@@ -27,11 +27,13 @@ from core.multibody.algebra.polynomials import (
     evaluated,
 )
 from core.multibody.language.numerals import member
+from core.multibody.language.strings import String
 from core.multibody.table.connection_effects import Limit, Unilateral
 from core.multibody.table.contact_geometry import bounciness
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.rows import add_rows
 from core.multibody.table.table import Row
 
 SIDES: Mapping[str, tuple[int, int]] = {"left": (0, -1), "right": (0, 1), "below": (1, -1), "above": (1, 1)}
@@ -67,7 +69,8 @@ class Knot:
     at: Path
 
 
-def string(measures: Measures, name: str, connection: Any, path: Path) -> None:
+@add_rows.register
+def string(connection: String, measures: Measures, name: str, path: Path) -> None:
     """Add the coordinates and rows of a string.
 
     Raises
@@ -93,7 +96,7 @@ def string(measures: Measures, name: str, connection: Any, path: Path) -> None:
             )
 
 
-def _knots(measures: Measures, connection: Any, path: Path) -> list[Knot]:
+def _knots(measures: Measures, connection: String, path: Path) -> list[Knot]:
     through = connection.through
     if not isinstance(through, (list, tuple)) or len(through) < 2:
         raise InvalidParameter((*path, "through"), "be a list of at least two places")
@@ -146,7 +149,7 @@ def _sides(value: Any, count: int, path: Path) -> list[str | None]:
     return list(listed)
 
 
-def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: Any, path: Path) -> None:
+def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: String, path: Path) -> None:
     """Add the rows of what lies between two ends or drums: the sum of its lengths does not change."""
     length = connection.length
     total: Poly = {}
@@ -190,7 +193,7 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
     measures.limits.append(Limit("slack", part, force=force))
 
 
-def _at_most(measures: Measures, part: str, longer: Poly, connection: Any, path: Path) -> Unilateral:
+def _at_most(measures: Measures, part: str, longer: Poly, connection: String, path: Path) -> Unilateral:
     """Return the measure of a string: what it is longer than its way."""
     restitution, order = bounciness(measures, connection, path)
     gap = combined((-ONE, longer))
@@ -211,7 +214,7 @@ def _require_long_enough(way: Ball, length: Ball, path: Path) -> None:
         )
 
 
-def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, path: Path) -> None:
+def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: String, path: Path) -> None:
     """Hold two points at a distance, as long as that takes a pull."""
     length = connection.length
     if measures.one_sided:

@@ -1,0 +1,103 @@
+"""Rows of connections that hold places or bodies to one another: pins, welds, sliders, rods, tracks."""
+
+from __future__ import annotations
+
+from core.errors import InvalidParameter, Path
+from core.multibody.algebra.directions import perpendicular
+from core.multibody.algebra.polynomials import ONE, constant, difference, evaluated
+from core.multibody.language.connection import TwoEnded
+from core.multibody.language.joints import BallJoint, Pin, Rod, Slider, Track, Weld
+from core.multibody.language.written import GROUND
+from core.multibody.table.frames import Point
+from core.multibody.table.measures import Measures
+from core.multibody.table.rows import add_rows
+
+
+@add_rows.register
+def pin(connection: Pin, measures: Measures, name: str, path: Path) -> None:
+    """Hold two places together, and in space the direction of an axis, if there is one."""
+    a, b = _ends(connection, measures, path)
+    measures.coincide(name, a, b, path)
+    if connection.axis is None:
+        return
+    if measures.dimension == 2:
+        raise InvalidParameter((*path, "axis"), "be left out in the plane")
+    axis = measures.numerals.vector(connection.axis, (*path, "axis"), 3)
+    perpendicular(axis, (*path, "axis"))
+    frames = measures.coordinates.frames
+    for body in (a.body, b.body):
+        if body is not None and frames[body].axes is None:
+            raise InvalidParameter((*path, "axis"), f'hold bodies that have moments, unlike "{body}"')
+    measures.aligned(name, a.body, b.body, axis, path)
+
+
+@add_rows.register
+def ball_joint(connection: BallJoint, measures: Measures, name: str, path: Path) -> None:
+    """Hold two places of space together."""
+    a, b = _ends(connection, measures, path)
+    if measures.dimension == 2:
+        raise InvalidParameter((*path, "kind"), 'be "pin" in the plane')
+    measures.coincide(name, a, b, path)
+
+
+@add_rows.register
+def rod(connection: Rod, measures: Measures, name: str, path: Path) -> None:
+    """Hold two places at a distance."""
+    a, b = _ends(connection, measures, path)
+    measures.rod(name, a, b, connection.length, path)
+
+
+@add_rows.register
+def slider(connection: Slider, measures: Measures, name: str, path: Path) -> None:
+    """Hold a place on a line that is fixed in a body, and the orientation to that body."""
+    a, b = _ends(connection, measures, path)
+    numerals, plane = measures.numerals, measures.dimension == 2
+    _two_bodies(a, b, path)
+    if connection.direction is not None and connection.slope is not None:
+        raise InvalidParameter((*path, "slope"), "be left out where a direction is given")
+    if connection.direction is not None:
+        along = numerals.vector(connection.direction, (*path, "direction"), measures.dimension)
+    elif plane:
+        along = numerals.angle(0 if connection.slope is None else connection.slope, (*path, "slope"))
+    else:
+        raise InvalidParameter((*path, "direction"), "be given")
+    measures.slide(name, a, b, along, (*path, "direction"))
+    measures.unturned(name, a, b, path)
+
+
+@add_rows.register
+def weld(connection: Weld, measures: Measures, name: str, path: Path) -> None:
+    """Hold the vector from one place to the other, and the orientation, as they are at the start."""
+    a = measures.coordinates.point(connection.a, (*path, "a"))
+    ground = [0] * measures.dimension
+    b = measures.coordinates.point(ground if connection.b == GROUND else connection.b, (*path, "b"))
+    _two_bodies(a, b, path)
+    carrier = b if b.body is not None and measures.coordinates.frames[b.body].orients else a
+    other = a if carrier is b else b
+    d = [difference(x, y) for x, y in zip(other.at, carrier.at, strict=True)]
+    start = [evaluated(x, measures.table.q) for x in d]
+    arm = measures.coordinates.vector_of(carrier.body, measures.in_body(carrier.body, start), path)
+    sign = ONE if carrier is b else -ONE
+    for axis, x, y in zip("xyz", d, arm, strict=False):
+        row = measures.hold(name, difference(x, y))
+        measures.force(f"{name}.{axis}", [(row, constant(sign))])
+    measures.unturned(name, a, b, path)
+
+
+@add_rows.register
+def track(connection: Track, measures: Measures, name: str, path: Path) -> None:
+    """Hold a place on a curve or surface."""
+    measures.on_curve(name, measures.coordinates.point(connection.place, (*path, "place")), connection.on, path)
+
+
+def _ends(connection: TwoEnded, measures: Measures, path: Path) -> tuple[Point, Point]:
+    for end, place in (("a", connection.a), ("b", connection.b)):
+        if place == GROUND:
+            raise InvalidParameter((*path, end), "be a place: of the ground, its coordinates")
+    point = measures.coordinates.point
+    return point(connection.a, (*path, "a")), point(connection.b, (*path, "b"))
+
+
+def _two_bodies(a: Point, b: Point, path: Path) -> None:
+    if a.body == b.body:
+        raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
