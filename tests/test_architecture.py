@@ -247,12 +247,15 @@ TESTED_IN |= {
             "audit/samples audit/start audit/windows"
         ),
         "audit/test_definitions": (
-            "audit/bodies audit/contact_definitions audit/contacts audit/definition audit/joints audit/laws "
-            "audit/newton audit/placement audit/rolling audit/strings audit/surfaces"
+            "audit/bodies audit/contact_definitions audit/contacts audit/definition audit/definition_of "
+            "audit/joint_definitions audit/joints audit/law_definitions audit/laws "
+            "audit/newton audit/placement audit/rolling audit/string_definitions "
+            "audit/strings audit/surfaces"
         ),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "
-            "table/frames table/measures table/rolling table/spatial_orientation"
+            "table/frames table/joints table/measures table/rolling table/rows "
+            "table/spatial_orientation"
         ),
         "trajectory/test_columns": "trajectory/column_errors",
         "language/test_scene": (

@@ -18,6 +18,11 @@ class Touching(Connection):
     a: Place | None
     b: Place | None
 
+    @property
+    def surface(self) -> Mapping[str, Any]:
+        """What `place` touches; empty where two bodies touch."""
+        return {} if self.on is None else self.on
+
     def turns(self, place: object, surroundings: Surroundings) -> bool:
         """Return whether the slip at a place depends on the turn of its body."""
         raise NotImplementedError

@@ -1,0 +1,58 @@
+"""From the description of a string or a chain to its definition."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from core.multibody.audit import strings
+from core.multibody.audit.bodies import Path, Reader
+from core.multibody.audit.contact_definitions import touch_of
+from core.multibody.audit.definition import Definition
+from core.multibody.audit.definition_of import definition_of
+from core.multibody.audit.placement import length
+from core.multibody.audit.strings import Knot, Run, run_of
+from core.multibody.language.strings import Chain, String
+
+
+@definition_of.register
+def string(connection: String, reader: Reader, name: str, path: Path) -> Definition:
+    """Return the definition of a string."""
+    knots: list[Knot] = []
+    sides: list[tuple[str, ...]] = []
+    for i, entry in enumerate(connection.through):
+        place, radius = reader.place(entry, (*path, "through", i)), reader.rim(entry)
+        slips = entry in connection.slips if isinstance(entry, str) else True
+        knots.append(Knot(place, radius, None if slips or not radius else place.body))
+        given = connection.sides.get(entry, ()) if isinstance(entry, str) else ()
+        sides.append((given,) if isinstance(given, str) else tuple(given))
+    runs: list[Run] = []
+    given = None if connection.length is None else reader.number(connection.length, (*path, "length"))
+    ends = [0, *(i for i in range(1, len(knots) - 1) if knots[i].drum is not None), len(knots) - 1]
+    for number, (first, last) in enumerate(pairwise(ends)):
+        pairs = tuple(
+            (sides[i][-1] if sides[i] else None, sides[i + 1][0] if sides[i + 1] else None)
+            for i in range(first, last)
+        )  # fmt: skip
+        part = name if len(ends) == 2 else f"{name}.{number + 1}"
+        runs.append(run_of(part, tuple(knots[first : last + 1]), pairs, given, reader.start))
+    bodies = tuple(dict.fromkeys(body for knot in knots for body in knot.place.bodies))
+    return strings.String(name, bodies, tuple(runs), touch_of(reader, name, path, connection.restitution))
+
+
+@definition_of.register
+def chain(connection: Chain, reader: Reader, name: str, path: Path) -> Definition:
+    """Return the definition of a chain."""
+    first, peg, last = (reader.place(entry, (*path, "through", i)) for i, entry in enumerate(connection.through))
+    between = [end.at(reader.start) - peg.at(reader.start) for end in (first, last)]
+    sizes = [float(length(d)) for d in between]
+    ways = [tuple((d / size).tolist()) for d, size in zip(between, sizes, strict=True)]
+    pulls = [float(np.dot(reader.gravity, way)) for way in ways]
+    given = connection.length
+    size = sum(sizes) if given is None else reader.number(given, (*path, "length"))
+    density = reader.number(connection.density, (*path, "density"))
+    bodies = (*first.bodies, *last.bodies)
+    fall = float(np.dot(reader.gravity, peg.offset))
+    ends, both = (first, last), (ways[0], ways[1])
+    return strings.Chain(name, bodies, ends, peg.offset, both, density, size, (pulls[0], pulls[1]), fall)
