@@ -16,8 +16,14 @@ from core.multibody.language.scene import Scene, check_size
 from core.near_names import did_you_mean
 
 
-def scene_from(description: Any) -> Scene:
+def scene_from(description: Any, kinds: Mapping[str, type[Connection]] = KINDS) -> Scene:
     """Return the scene that an object of JSON describes.
+
+    Parameters
+    ----------
+    description : object
+    kinds : mapping of str to type
+        The kinds of connections that it may name.
 
     Raises
     ------
@@ -41,13 +47,13 @@ def scene_from(description: Any) -> Scene:
         joined: list[Connection] = []
         for i, entry in enumerate(connections):
             with faults.part():
-                joined.append(_connection(entry, ("connections", i)))
+                joined.append(_connection(entry, ("connections", i), kinds))
         given["connections"] = tuple(joined)
     faults.raised()
     return Scene(**given)
 
 
-def _connection(entry: Any, path: Path) -> Connection:
+def _connection(entry: Any, path: Path, kinds: Mapping[str, type[Connection]]) -> Connection:
     if not isinstance(entry, Mapping):
         raise InvalidParameter(path, "be an object")
     kind = entry.get("kind")
@@ -55,10 +61,10 @@ def _connection(entry: Any, path: Path) -> Connection:
         raise InvalidParameter(
             (*path, "kind"), "be a connection that holds, pushes, pulls or drives; blows are not answered yet"
         )
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(KINDS)}", remedy=did_you_mean(kind, KINDS))
+    if not isinstance(kind, str) or kind not in kinds:
+        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(kinds)}", remedy=did_you_mean(kind, kinds))
     rest = {key: value for key, value in entry.items() if key != "kind"}
-    return KINDS[kind](**_object(rest, path, KINDS[kind]))
+    return kinds[kind](**_object(rest, path, kinds[kind]))
 
 
 def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
