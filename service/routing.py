@@ -204,6 +204,8 @@ class GetRoute:
         Returns an example of a JSON page.
     documented : bool
         Whether the OpenAPI document lists it.
+    fixed : bool
+        Whether it is the same as long as the service runs, and is compressed once.
     """
 
     path: str
@@ -216,6 +218,7 @@ class GetRoute:
     description: str = ""
     example: Callable[[], Mapping[str, Any]] | None = None
     documented: bool = True
+    fixed: bool = False
     method: str = "GET"
 
 

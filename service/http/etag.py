@@ -17,19 +17,26 @@ class Representation:
     ----------
     etag : bytes
         Strong validator: a hash of the body.
+    content_type : bytes
     about : tuple of Header
         Those that are sent without the body, too, where the client has it already.
     headers : tuple of Header
         All that belong to the body.
     """
 
-    __slots__ = ("about", "body", "etag", "headers")
+    __slots__ = ("_more", "about", "body", "content_type", "etag", "headers")
 
-    def __init__(self, body: bytes, content_type: Header = JSON, more: tuple[Header, ...] = ()) -> None:
-        self.body = body
-        self.etag = etag = etag_of(body)
+    def __init__(
+        self, body: bytes, content_type: Header = JSON, more: tuple[Header, ...] = (), etag: bytes = b""
+    ) -> None:
+        self.body, self.content_type, self._more = body, content_type[1], more
+        self.etag = etag = etag or etag_of(body)
         self.about = ((b"etag", etag), NOSNIFF, *more)
         self.headers = (content_type, (b"content-length", b"%d" % len(body)), *self.about)
+
+    def coded(self, body: bytes, etag: bytes, headers: tuple[Header, ...]) -> Representation:
+        """Return the same document with another body and validator, and some more headers."""
+        return Representation(body, (b"content-type", self.content_type), (*self._more, *headers), etag)
 
 
 def etag_of(first: bytes, *more: bytes) -> bytes:

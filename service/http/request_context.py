@@ -10,6 +10,7 @@ from time import perf_counter
 
 from starlette.types import Receive, Scope, Send
 
+from service.http.compression import LEAST, Coding, Compressor, coding_for, compressed, is_compressed, off_loop
 from service.http.etag import JSON, NOSNIFF, Header, Representation
 from service.http.keys import Key
 from service.http.limits import ClientGone
@@ -21,6 +22,7 @@ SHORT = 1_024
 
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
 VARY: Header = (b"vary", b"accept")
+_VARY_ENCODING: Header = (b"vary", b"accept-encoding")
 _NOT_STORED: Header = (b"cache-control", b"no-store")
 _REVALIDATE: Header = (b"cache-control", b"no-cache")
 _PAGE_HEADERS: tuple[Header, ...] = (
@@ -79,19 +81,27 @@ class RequestContext:
         while (await self.receive())["type"] != "http.disconnect":
             pass
 
-    async def answer(self, answer: Representation) -> None:
-        """Send a document in one piece, or that the client has it already."""
+    async def answer(self, answer: Representation, *, kept: bool = False) -> None:
+        """Send a document in one piece, or that the client has it already; compressed once where it is `kept`."""
+        if len(answer.body) >= LEAST and is_compressed(answer.content_type):
+            coding = self._coding(answer.content_type)
+            # The validator is that of the bytes which would be sent, known without them.
+            etag = answer.etag if coding is None else coding.tagged(answer.etag)
+            body = answer.body
+            if coding is not None and not self._has(etag):
+                body = await compressed(coding, body, kept=kept)
+            answer = answer.coded(body, etag, _headers_of(coding))
         if self._has(answer.etag):
             await self._respond(304, b"", answer.about)
         else:
             await self._respond(200, answer.body, answer.headers)
 
-    async def page(self, body: bytes, media_type: bytes, status: int) -> None:
-        """Send the document of a GET route, which clients revalidate."""
+    async def page(self, body: bytes, media_type: bytes, status: int, *, kept: bool = False) -> None:
+        """Send the document of a GET route, which clients revalidate; compressed once where it is `kept`."""
         guards = _PAGE_HEADERS if media_type.startswith(b"text/html") else ()
         page = Representation(body, (b"content-type", media_type), (_REVALIDATE, *guards))
         if status == 200:
-            await self.answer(page)
+            await self.answer(page, kept=kept)
         else:
             await self._respond(status, body, [header for header in page.headers if header[0] != b"etag"])
 
@@ -118,12 +128,19 @@ class RequestContext:
         ClientGone
             If the client has left, or has taken nothing for longer than `patience` (s).
         """
+        content_type = dict(headers)[b"content-type"]
+        coding = self._coding(content_type)
+        if is_compressed(content_type):
+            headers = [*headers, *_headers_of(coding)]
+        if coding is not None:
+            etag = coding.tagged(etag)
         if self._has(etag):
             about = [header for header in headers if header[0] != b"content-type"]
             await self._respond(304, b"", [*about, (b"etag", etag), NOSNIFF])
             return
         await self._start(200, [*headers, (b"etag", etag), NOSNIFF])
         leaving = asyncio.ensure_future(self.gone())
+        compressor = None if coding is None else coding.fast()
         more = True
         try:
             while more:
@@ -133,7 +150,9 @@ class RequestContext:
                 async with turns:
                     body, more = _gathered(pieces)
                     await asyncio.sleep(0)
-                if more:
+                if compressor is not None:
+                    body = await _coded(compressor, body, last=not more)
+                if more and body:
                     async with asyncio.timeout(patience):
                         await self._send({"type": "http.response.body", "body": body, "more_body": True})
         except TimeoutError:
@@ -145,7 +164,11 @@ class RequestContext:
 
     async def document(self, body: bytes, status: int, headers: Iterable[Header] = ()) -> None:
         """Send a JSON document that changes, and is not to be stored by anyone."""
+        coding = self._coding(JSON[1]) if len(body) >= LEAST else None
+        if coding is not None:
+            body = await compressed(coding, body)
         length = (b"content-length", b"%d" % len(body))
+        headers = (*headers, *_headers_of(coding))
         await self._respond(status, body, [JSON, length, _NOT_STORED, NOSNIFF, *headers])
 
     async def events(self, events: AsyncIterator[bytes]) -> None:
@@ -168,13 +191,20 @@ class RequestContext:
             If the client has left, or has taken nothing for longer than `patience` (s).
         """
         first = await asyncio.to_thread(next, pieces, b"")
-        await self._start(200, [(b"content-type", media_type), _NOT_STORED, VARY, NOSNIFF])
+        coding = self._coding(media_type)
+        coded = _headers_of(coding) if is_compressed(media_type) else ()
+        await self._start(200, [(b"content-type", media_type), _NOT_STORED, VARY, NOSNIFF, *coded])
+        compressor = None if coding is None else coding.fast()
 
         async def each() -> AsyncIterator[bytes]:
             piece: bytes | None = first
             while piece is not None:
-                yield piece
-                piece = await asyncio.to_thread(next, pieces, None)
+                following = await asyncio.to_thread(next, pieces, None)
+                if compressor is not None:
+                    piece = await _coded(compressor, piece, last=following is None)
+                if piece:
+                    yield piece
+                piece = following
 
         await self._each(each(), patience)
 
@@ -197,6 +227,9 @@ class RequestContext:
         """Count the request as finished."""
         seconds = perf_counter() - self._since
         self._records.finished(self.identity, self.operation, self.scope["method"], status, seconds)
+
+    def _coding(self, content_type: bytes) -> Coding | None:
+        return coding_for(self.headers.get(b"accept-encoding"), content_type)
 
     def _has(self, etag: bytes) -> bool:
         known = self.headers.get(b"if-none-match")
@@ -233,6 +266,15 @@ def network_of(address: str) -> str:
     if found.ipv4_mapped is not None:
         return str(found.ipv4_mapped)
     return str(ip_network((int(found), 64), strict=False))
+
+
+def _headers_of(coding: Coding | None) -> tuple[Header, ...]:
+    """Return the headers of a document that is compressed for who accepts it."""
+    return (_VARY_ENCODING,) if coding is None else (_VARY_ENCODING, (b"content-encoding", coding.name))
+
+
+async def _coded(compressor: Compressor, piece: bytes, *, last: bool) -> bytes:
+    return await off_loop(len(piece), lambda: compressor.compress(piece) + (compressor.flush() if last else b""))
 
 
 def _by_name(headers: Sequence[Header]) -> dict[bytes, bytes]:

@@ -30,6 +30,7 @@ def pages(openapi: Callable[[], bytes]) -> tuple[GetRoute, ...]:
         "The OpenAPI document",
         "pages",
         lambda: Reply(openapi()),
+        fixed=True,
         example=lambda: {"openapi": "3.1.0", "info": {"title": "Polhode", "version": VERSION}, "paths": {}},
     )
     documents = [_file(path, FOLDER / name, operation, summary) for path, (name, operation, summary) in _PAGES.items()]
@@ -48,4 +49,6 @@ def _file(path: str, file: Path, operation_id: str, summary: str, documented: bo
     def content() -> Reply:
         return Reply(file.read_bytes(), f"{media_type}; charset=utf-8".encode())
 
-    return GetRoute(path, operation_id, summary, "pages", content, media_type=media_type, documented=documented)
+    return GetRoute(
+        path, operation_id, summary, "pages", content, media_type=media_type, documented=documented, fixed=True
+    )

@@ -109,7 +109,16 @@ def test_questions_are_answered_over_tls(proxy: int) -> None:
     assert headers["strict-transport-security"]
     assert "/" not in headers["server"]
     longer = hostile.text(times={"start": 0, "stop": 1, "count": 1000})
-    assert post(proxy, longer, **{"accept-encoding": "gzip"})[1]["content-encoding"] == "gzip"
+    for coding in ("gzip", "zstd"):
+        status, headers, content = post(proxy, longer, **{"accept-encoding": coding})
+        assert (status, headers["content-encoding"]) == (200, coding)
+        # What is revalidated through the proxy is what it passed on.
+        assert headers["etag"].endswith(f'-{coding}"')
+        known = {"accept-encoding": coding, "if-none-match": headers["etag"]}
+        assert (post(proxy, longer, **known)[0], post(proxy, longer, **known)[2]) == (304, b"")
+    plain = post(proxy, longer)
+    assert plain[1]["content-encoding"] is None
+    assert json.loads(plain[2])["signature"]["source"] == "polhode"
 
 
 @needs_nginx
