@@ -21,7 +21,11 @@ LinearForm = dict[int, Poly]
 """A linear form in the rates: for each coordinate whose rate enters, an affine polynomial. Lines of W are such."""
 
 ZERO: Ball = arb(0)
+"""Nothing, without a radius."""
+
 ONE: Ball = arb(1)
+"""One, without a radius."""
+
 BITS = 320
 """Working precision of the set-up: differences of 1e-90 of the terms are taken as zero."""
 

@@ -26,8 +26,11 @@ _UNITS = 0.02
 """Units of work (`core.work`), times the cube of the size, for real numbers; complex ones take four times as much."""
 _RIGHT = 40
 """Bits of the vectors that are trusted to be right in doubles."""
-_GUARD = 64
-_ROUNDED = 2.0**-50
+_GUARD_OF_VECTORS = 64
+"""Bits of a refinement beyond those that it makes right, for the rounding of its products."""
+
+_ROUNDED_ROOTS = 2.0**-50
+"""Four units in the last place of doubles: roots are compared as doubles, and one is rounded by half of a unit."""
 
 
 def spectrum(matrix: Any) -> tuple[list[Any], Any] | None:
@@ -54,7 +57,7 @@ def spectrum(matrix: Any) -> tuple[list[Any], Any] | None:
     try:
         while right < ctx.prec:
             right *= 2
-            with precision(min(ctx.prec, right + _GUARD)):
+            with precision(min(ctx.prec, right + _GUARD_OF_VECTORS)):
                 nearly = vectors.solve(matrix * vectors).mid().tolist()
                 vectors = (vectors + vectors * matrices(_change(nearly))).mid()
         return _enclosed(vectors, vectors.solve(matrix * vectors), matrices)
@@ -90,7 +93,7 @@ def _enclosed(vectors: Any, diagonalised: Any, matrices: Any) -> tuple[list[Any]
     beside = [sum((abs(x) for j, x in enumerate(row) if j != i), abs(row[i] - roots[i])) for i, row in enumerate(rows)]
     most = max((x.upper() for x in beside), default=arb(0))
     places = np.array([complex(float(root.real), float(root.imag)) for root in roots])
-    gaps = np.abs(places[:, None] - places) - _ROUNDED * (np.abs(places)[:, None] + np.abs(places))
+    gaps = np.abs(places[:, None] - places) - _ROUNDED_ROOTS * (np.abs(places)[:, None] + np.abs(places))
     np.fill_diagonal(gaps, np.inf)
     nearest = gaps.min(axis=1)
     if not np.all(np.isfinite(places)) or not (nearest > 8.0 * float(most)).all():

@@ -21,16 +21,23 @@ from core.formulas import FUNCTIONS, LARGEST_EXPONENT, Arithmetic, Formula, is_n
 from core.multibody.algebra.polynomials import Ball, is_zero
 
 MOST_DIGITS = 200
-_ROUNDED = 1 + arb(2) ** -52
-LARGEST, LEAST = 10**300 * _ROUNDED, 1 / (10**300 * _ROUNDED)
+"""Digits of a number: twice as many as the precision of the set-up distinguishes."""
+
+_ROUNDED_UP = 1 + arb(2) ** -52
+"""What rounding to the nearest double may add, with a factor of two: bounds hold for decimals and doubles alike."""
+
+LARGEST, LEAST = 10**300 * _ROUNDED_UP, 1 / (10**300 * _ROUNDED_UP)
 """Size between which numbers other than zero are, as decimals or doubles: these hold them with all their digits."""
 LARGEST_POWER = 100
 """To which something is raised in a formula."""
 SHIFT = 2.0**-70
 """Share of itself by which a number is moved, to see what depends on it."""
 MOST_NAMES = 100
+"""Names in `let`: as many as there may be bodies. Each may use all before it."""
 
 LONGEST_NAME = 64
+"""Letters of a name, as `NAME` has them."""
+
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 """What bodies, places, connections and numbers may be called."""
 

@@ -19,7 +19,10 @@ from core.multibody.language.numerals import LONGEST_NAME, NAME, member
 from core.multibody.language.written import GROUND, Number, Vector
 
 MOST_BODIES = 100
+"""Bodies of a scene: the cost of its equations grows as the cube of their number."""
+
 MOST_CONNECTIONS = 400
+"""Connections of a scene: four for every body."""
 
 
 def check_size(bodies: Sized, connections: Sized) -> None:

@@ -34,9 +34,12 @@ from core.systems.trajectory import HORIZON
 PROVEN_OUTPUTS = ("accelerations", "forces", "energy", "trajectory")
 """What is answered to many digits."""
 LATEST = 10**300
+"""Latest time (s): the end of a motion is looked for in doubles, whose range ends at 1.8e308."""
+
 _BITS_OF_A_SECOND = 30
 """What a second of motion in several coordinates loses, about; at the first precision so many are added."""
 _MOST_ADDED = 300
+"""Bits that are added at most at the first precision; what loses more is found out by computing."""
 
 
 @dataclass(frozen=True)

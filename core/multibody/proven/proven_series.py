@@ -31,10 +31,15 @@ from core.work import spend
 MOST_STEPS, MOST_WORK = 400, 12_000
 """Steps that a motion may take on either side of the start, and the same times the square of its unknowns."""
 _WORK_OF_A_STEP = 3_000
+"""Units of work (`core.work`) of a step."""
+
 _ORDERS = 0.35
 """Orders of a step for each bit of the precision: more would be as costly, in fewer steps."""
 _SPARE = 24
-_HALVINGS = 60
+"""Bits that the truncation of a step may lose beside rounding."""
+
+_SHORTENINGS = 60
+"""How often a step is shortened by 0.7 until it encloses its motion: down to 5e-10 of what the last order allows."""
 
 Vector = list[Ball]
 
@@ -118,7 +123,7 @@ class ProvenSeries:
         size = max((float(abs(x).upper()) for x in (*q, *v)), default=0.0) or 1.0
         last = max((float(abs(x[order]).upper()) for x in series), default=0.0)
         h = float((small * size / last) ** (arb(1) / order)) if last > 0.0 else 1e3
-        for _ in range(_HALVINGS):
+        for _ in range(_SHORTENINGS):
             if not 0.0 < h < math.inf:
                 return arb(0), []
             step = arb(h)

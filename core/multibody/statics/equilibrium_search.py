@@ -16,18 +16,29 @@ from core.multibody.statics.static_equations import StaticArrays, StaticEquation
 from core.work import spend
 
 MOST_FOUND = 100
+"""Places of rest that are answered: a chain of six pendulums has 64."""
+
 _STARTS = 128
 """Starts for every degree of freedom."""
-_ROUNDS = 60
+_NEWTON_ROUNDS = 60
+"""Newton steps of a start: quadratic convergence takes some ten from nearby, the others are for the way there."""
+
 _MOST_OPERATIONS = 80_000_000
 """Of one round: starts times the cube of the unknowns. More would take longer than a minute, and gigabytes."""
 _OPERATIONS_PER_UNIT = 40.0
 """So many, in every round, take a unit of work (`core.work`)."""
 _SAME = 1e-7
+"""Relative distance up to which two ends are one place of rest: a thousand times what `_CONVERGED` leaves."""
+
 _CONVERGED = 1e-10
+"""Relative size of the last step and of the forces that are left: rounding leaves some 1e-13 of a few dozen
+unknowns."""
+
 _SETTLED = 1e-6
 """Largest last relative change of the multipliers: beside a length of zero they grow without bound."""
 _ENDED = 1e-13
+"""Relative length of a step that is nothing but rounding, of some hundred operations in doubles."""
+
 _FAR, _HARD = 1e6, 1e12
 """Places and multipliers beyond which a start is given up."""
 _DWARFED = 1e4
@@ -118,7 +129,7 @@ def _begin(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats,
 def _newton(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats) -> bool:
     """Follow Newton's method; return whether it stays within every bound."""
     n, dwarfed = len(q), 0
-    for _ in range(_ROUNDS):
+    for _ in range(_NEWTON_ROUNDS):
         left, terms, _off = linearised(arrays, q, multipliers, system, right)
         largest, far = _largest(multipliers), _largest(q)
         singular = _step(arrays, system, right)

@@ -30,9 +30,15 @@ _FARTHEST = -4
 _LEAST, _BEFORE = -80.0, 8
 """The nearest place is about as far as the share of stiffness that is left, or as its root: distances begin at a
 sixteenth of the share (M. Golubitsky, D. Schaeffer, "Singularities and Groups in Bifurcation Theory" I (1985))."""
-_STEPS = 8
-_HALVINGS = 24
-_SMALL = 2.0**-120
+_NEWTON_STEPS_OF_A_DISTANCE = 8
+"""Newton steps at a distance: from the one before, 1.4 times as near, quadratic convergence takes fewer."""
+
+_HALVINGS_OF_A_DISTANCE = 24
+"""Halvings of a distance: what they leave, 1e-7 of it, is within the reach of Newton's method."""
+
+_SHORT_STEP = 2.0**-120
+"""Share of a step that is small enough: its square is below the rounding of `_BITS`."""
+
 _UNITS = 0.02
 """Units of work (`core.work`) of a step, times the cube of the unknowns."""
 
@@ -79,7 +85,7 @@ class _Path:
         """Return coordinates and multipliers at a distance, and the force that holds there; None where none does."""
         equations, count, size = self.equations, self.equations.count, len(x)
         x, force = list(x), ZERO
-        for _ in range(_STEPS):
+        for _ in range(_NEWTON_STEPS_OF_A_DISTANCE):
             spend(_UNITS * (size + 1) ** 3)
             rows = equations.derivatives(x).tolist()
             left = equations.residuals(x)
@@ -97,14 +103,14 @@ class _Path:
             share = max(abs(float(b / scale)) for b, scale in zip(step[:size], equations.sizes, strict=True))
             if not share < 1.0:
                 return None
-            if share < _SMALL:
+            if share < _SHORT_STEP:
                 return x, force
         return None
 
     def between(self, x: Sequence[Ball], low: Ball, high: Ball, before: Ball) -> list[Ball]:
         """Return about where the force is zero between two distances, with the sign that it has at the first."""
         near = list(x)
-        for _ in range(_HALVINGS):
+        for _ in range(_HALVINGS_OF_A_DISTANCE):
             middle = ((low + high) / 2).mid()
             held = self.held(near, middle)
             if held is None:

@@ -39,7 +39,9 @@ PROBES = 64
 """Values between the written one and each bound that are looked at where rest need not be one interval."""
 _NARROW = 2.0**-64
 """Width of what is left at an end, relative to its value."""
-_HALVINGS = 200
+_MOST_HALVINGS = 200
+"""Halvings of an end: 64 reach `_NARROW`, and 128 an end at zero."""
+
 _UNITS = 50.0
 """Work of one probe, for every coordinate of the scene."""
 
@@ -207,7 +209,7 @@ def _end(varied: _Varied, inside: Ball, bound: Ball) -> RestEnd:
 def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
     """Return the end of rest between a value with it and one without."""
     inside, first = arb(inside.mid()), abs(float(outside - inside))
-    for _ in range(_HALVINGS):
+    for _ in range(_MOST_HALVINGS):
         middle = arb(((inside + outside) / 2).mid())
         # An end at zero is known relative to where it was looked for.
         if abs(float(outside - inside)) <= _NARROW * max(abs(float(middle)), _NARROW * first):

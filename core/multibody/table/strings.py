@@ -40,6 +40,8 @@ SIDES: Mapping[str, tuple[int, int]] = {"left": (0, -1), "right": (0, 1), "below
 """A side of a drum: which component of the way from its centre to the tangent point, and the sign it has."""
 
 MOST_THROUGH = 50
+"""Places that a string passes: coordinates and rows grow with them."""
+
 SLACK = 1e-9
 """Share of its length by which a string may be longer than its way and still be meant as taut."""
 
