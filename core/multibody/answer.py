@@ -127,8 +127,8 @@ class SceneExtremes:
 
     Attributes
     ----------
-    largest_time : float
-        Near a smooth extreme known to half of the digits only.
+    least_time, largest_time : float
+        The first of the times that are not told apart.
     error : float
         Of both values.
     until : float
@@ -136,7 +136,7 @@ class SceneExtremes:
     periodic : bool
         Whether that is a period, so that the extremes are those of all time.
     errors : mapping of str to float
-        Of both times (s): how far from the extreme a value is told from it no more.
+        Of both times (s); of a constant, as long as what was searched.
     """
 
     quantity: str

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,7 @@ from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly
 from core.multibody.algebra.rank import independent
-from core.multibody.equations.dynamics import undetermined
+from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
 from core.multibody.motion.motion import EvaluatedInDoubles, Motion
 from core.multibody.motion.numerical import Numerical
@@ -65,6 +65,9 @@ class Whole:
     reduced_accelerations: Sequence[Ball]
     parts: Sequence[tuple[Sequence[int], Motion]]
     dropped: bool = False
+    _packed: dict[tuple[int, ...], tuple[Packed, Units, list[int]]] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     @cached_property
     def affine(self) -> tuple[Floats, Floats]:
@@ -100,13 +103,25 @@ class Whole:
         mass = max((x for (i, j), x in table.mass.items() if i == j), key=float, default=ONE)
         return replace(table, mass={**table.mass, **{(i, i): mass for i in loose}})
 
-    @cached_property
-    def reduced_arrays(self) -> tuple[Packed, Units, list[int]]:
-        """The reduced table for compiled code, its units, and the rows that it holds."""
-        table = self.reduced.table
-        chosen = independent(row.line(table.q) for row in table.rows)
-        units = units_of(table, self.reduced_accelerations)
-        return packed(table, chosen, units), units, chosen
+    def parts_of(self, coordinates: Sequence[int] | None) -> tuple[int, ...]:
+        """Return the numbers of the parts that these coordinates of the scene follow, all of them for None."""
+        if coordinates is None:
+            return tuple(range(len(self.parts)))
+        seen = {key[0] for i in coordinates for key in self.reduced.expressions[i] if key}
+        return tuple(k for k, (indices, _) in enumerate(self.parts) if seen & set(indices))
+
+    def reduced_arrays(self, parts: tuple[int, ...]) -> tuple[Packed, Units, list[int]]:
+        """Return the reduced table of some parts for compiled code, its units, and its coordinates."""
+        if parts not in self._packed:
+            where = sorted(i for k in parts for i in self.parts[k][0])
+            table = restricted(self.reduced.table, where)
+            units = units_of(table, [self.reduced_accelerations[i] for i in where])
+            self._packed[parts] = (
+                packed(table, independent(row.line(table.q) for row in table.rows), units),
+                units,
+                where,
+            )
+        return self._packed[parts]
 
     @cached_property
     def independent_rows(self) -> list[int]:
@@ -125,8 +140,7 @@ class Whole:
 
     def motions_of(self, coordinates: Sequence[int]) -> list[Motion]:
         """Return the motions of the parts that these coordinates of the scene follow."""
-        seen = {key[0] for i in coordinates for key in self.reduced.expressions[i] if key}
-        return [motion for indices, motion in self.parts if seen & set(indices)]
+        return [self.parts[k][1] for k in self.parts_of(coordinates)]
 
     def states(self, times: Floats, *, finer: bool = False) -> WholeStates:
         """Return the states at times of shape (t,)."""

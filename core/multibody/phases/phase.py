@@ -12,6 +12,7 @@ from core.multibody.contacts.complementarity import Decided
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.contacts.projection import project
+from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.motion.modelling import Modelled, models_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.numerical import Numerical
@@ -67,6 +68,14 @@ class Phase:
     def uniform(self) -> bool:
         """Whether every acceleration is constant, and every force of a contact."""
         return all(is_uniform(model) for model in self.models) and has_constant_forces(self.tables[0])
+
+    @cached_property
+    def determined(self) -> list[bool]:
+        """Which of the forces the scene determines."""
+        model = self.models[0]
+        measures = model.described.measures
+        multipliers = multipliers_at_start(measures, model.whole.acceleration)
+        return [force.value is not None for force in forces_at_start(measures, multipliers)]
 
     @property
     def turning(self) -> bool:

@@ -25,7 +25,7 @@ from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.phases.uniform_pieces import ExpandedUniform, along_uniform
 from core.multibody.phases.watches import Watch, lengths, watches
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
-from core.multibody.search.first_zero import Found
+from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located
 from core.multibody.search.pieces import Expanded, repeats_after
 from core.multibody.table.description import Described
@@ -169,7 +169,7 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
 
 def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
     """Return the first crossing of a phase on both of its tracks, none where nothing ends it."""
-    expansions, period = _expansions(phase), repeats_after(phase.models[0].whole)
+    expansions, period = expansions_of(phase), repeats_after(phase.models[0].whole)
     along = [partial(along_uniform, watch) if phase.uniform else watch.along for watch in watched]
     search = FirstOfMotion(expansions, [replace(w.watched, along=a) for w, a in zip(watched, along, strict=True)])
     last = left if period is None else min(left, period)
@@ -221,7 +221,7 @@ def _located(phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Fou
     return crossings
 
 
-def _expansions(phase: Phase) -> Expansions:
+def expansions_of(phase: Phase) -> Expansions:
     """Return the motion on both tracks, or by both of its runs; only one where it is known in closed form."""
     first, last = phase.models[0].whole, phase.models[-1].whole
     if phase.turning:

@@ -9,7 +9,6 @@ from flint import arb
 
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import Ball
-from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equations.packed import pair
 from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.phase import Phase
@@ -118,11 +117,8 @@ def columns_in(
     phase: Phase, times: Times, states: WholeStates, how: How, outputs: Sequence[object]
 ) -> dict[str, Column]:
     """Return the columns of some outputs; forces that the phase does not determine are left out."""
-    model = phase.models[0]
-    determined: Sequence[bool] = ()
-    if "forces-in-time" in outputs:
-        measures = model.described.measures
-        multipliers = multipliers_at_start(measures, model.whole.acceleration)
-        determined = [force.value is not None for force in forces_at_start(measures, multipliers)]
+    determined = phase.determined if "forces-in-time" in outputs else ()
     since = np.array([float(t) for t in times])
-    return Columns(model.whole, since, states, how, unknown=_unknown(phase, times)).chosen(outputs, determined)
+    return Columns(phase.models[0].whole, since, states, how, unknown=_unknown(phase, times)).chosen(
+        outputs, determined
+    )

@@ -18,20 +18,19 @@ from core.errors import NotApplicable
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.equations.packed import nearest
 from core.multibody.phases.stretches import Stretch
+from core.multibody.trajectory.column_errors import PLACES_BETWEEN
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES
 from core.multibody.trajectory.occurrences import (
     MOST_FOUND,
+    ROUNDED,
     ExtremesOf,
-    Sampler,
     When,
-    away_from_start,
-    brackets,
     component,
-    coordinates_of,
-    extremes_on,
-    located,
+    require_in_range,
     unknown,
 )
+from core.multibody.trajectory.quantities import sought_in
+from core.multibody.trajectory.search_along import Sampler, SearchAlong
 from core.systems.trajectory import Column, How
 
 _SLOPE = 1e-6
@@ -52,10 +51,6 @@ class SearchInPhases:
     def __init__(self, pieces: Sequence[Stretch], how: How) -> None:
         self.pieces, self.how = pieces, how
 
-    def _followed(self, search: When | ExtremesOf) -> Sequence[int] | None:
-        """Return the coordinates that the quantity follows, None where it may be any."""
-        return coordinates_of(search.quantity, self.pieces[0].phase.models[0].whole.measures.coordinates.frames)
-
     def occurrences(self, search: When, index: int) -> list[Occurrence]:
         """Return the times after the start at which a quantity takes a value."""
         wanted = MOST_FOUND if search.nth is None else search.nth
@@ -70,10 +65,29 @@ class SearchInPhases:
         """Return the least and the largest value."""
         found: list[SceneExtremes] = []
         for piece, sampler in zip(self.pieces, self._samplers(search, index), strict=True):
-            own = extremes_on(piece.grid(self._followed(search)), sampler, search.quantity)
-            times = [nearest(piece.start + arb(t)) for t in (own.least_time, own.largest_time)]
-            errors = {name: error + piece.late + 2.0**-52 * max(times) for name, error in own.errors.items()}
-            found.append(replace(own, least_time=times[0], largest_time=times[1], errors=errors))
+            ends = sampler(np.array([0.0, piece.length]))
+            require_in_range(search.quantity, ends.error, *ends.values)
+            least, largest = self._along(piece, sampler, search).extremes()
+            error = sampler(np.array([least.time, largest.time])).error
+            times = [nearest(piece.start + arb(one.time)) for one in (least, largest)]
+            errors = {
+                name: one.error + piece.late + 2.0**-52 * time
+                for name, one, time in zip(("least_time", "largest_time"), (least, largest), times, strict=True)
+            }
+            found.append(
+                SceneExtremes(
+                    search.quantity,
+                    ends.unit,
+                    least.value,
+                    times[0],
+                    largest.value,
+                    times[1],
+                    error,
+                    piece.length,
+                    False,
+                    errors,
+                )
+            )
         low, high = min(found, key=lambda one: one.least), max(found, key=lambda one: one.largest)
         last = self.pieces[-1]
         return replace(
@@ -108,29 +122,38 @@ class SearchInPhases:
 
         return sampled
 
+    def _along(self, piece: Stretch, sampler: Sampler, search: When | ExtremesOf) -> SearchAlong:
+        """Return the search along a stretch."""
+        model = piece.phase.models[0]
+        sought = sought_in(model.whole, piece.phase.determined)(search.quantity)
+        assert sought is not None
+        return SearchAlong(piece.expansions, sought, sampler, piece.length, piece.expanded)
+
     def _taken(self, search: When, samplers: Sequence[Sampler]) -> Iterator[Occurrence]:
         """Yield where the value is taken, in order."""
         for number, (piece, sampler) in enumerate(zip(self.pieces, samplers, strict=True)):
-            grid = piece.grid(self._followed(search))
-            if len(grid) < 2:
+            if not piece.length > 0.0:
                 continue
-            column = sampler(grid)
-            curve, noise = column.values - search.equals, 2.0 * column.error
-            end = sampler(grid[-1:])
-            curve[[0, -1]] = np.where(np.abs(curve[[0, -1]]) <= noise, 0.0, curve[[0, -1]])
+            column = sampler(piece.length * np.array([0.0, *PLACES_BETWEEN, 1.0]))
+            require_in_range(search.quantity, column.error)
+            noise = 2.0 * column.error
+            near = np.abs(column.values - search.equals) <= noise
             # What has the value all the time takes it no more.
-            if np.all(np.abs(curve) <= noise):
+            if np.all(near):
                 continue
-            away = away_from_start(curve, noise)
-            inside = brackets(grid[away:], curve[away:], sampler, search.equals, MOST_FOUND)
-            if inside and inside[-1][0] == grid[-1]:
-                inside.pop()
-            for low, high in inside:
-                one = located(sampler, search, low, high, 0)
-                time = nearest(piece.start + arb(one.time))
-                yield replace(one, time=time, error=one.error + piece.late + 2.0**-52 * abs(time))
-            if curve[-1] == 0.0 or self._begins(number + 1, samplers, search):
-                yield self._at_end(piece, sampler, search, end)
+            along = self._along(piece, sampler, search)
+            hits = along.hits(search.equals, noise if number else ROUNDED * abs(search.equals))
+            at_end = None
+            if near[-1] or self._begins(number + 1, samplers, search):
+                at_end = self._at_end(piece, sampler, search)
+            for hit in hits:
+                if at_end is not None and float(hit.time) + hit.error >= piece.length - at_end.error:
+                    continue
+                time = nearest(piece.start + hit.time)
+                error = hit.error + piece.late + 2.0**-52 * abs(time)
+                yield Occurrence(search.quantity, search.equals, column.unit, 0, time, error, self.how)
+            if at_end is not None:
+                yield at_end
 
     def _begins(self, number: int, samplers: Sequence[Sampler], search: When) -> bool:
         """Return whether a stretch begins with the value, and another one follows it."""
@@ -139,8 +162,9 @@ class SearchInPhases:
         start = samplers[number](np.array([0.0, self.pieces[number].length]))
         return abs(float(start.values[0]) - search.equals) <= 2.0 * start.error
 
-    def _at_end(self, piece: Stretch, sampler: Sampler, search: When, end: Column) -> Occurrence:
+    def _at_end(self, piece: Stretch, sampler: Sampler, search: When) -> Occurrence:
         """Return the occurrence at the event that ends a stretch."""
+        end = sampler(np.array([piece.length]))
         before = piece.length * (1.0 - _SLOPE)
         slope = abs(float(sampler(np.array([before])).values[0] - end.values[0])) / (piece.length - before)
         time = nearest(piece.start + arb(piece.length))

@@ -14,15 +14,19 @@ from flint import arb
 from core.arrays import Floats
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.equations.expansion import Expansion
 from core.multibody.equations.packed import pair
+from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.accumulation import Accumulation
+from core.multibody.phases.crossings import uniform_motion
 from core.multibody.phases.phase import Phase, PhaseMotion
+from core.multibody.phases.phase_ends import expansions_of
 from core.multibody.phases.phase_states import columns_in, states_in
 from core.multibody.phases.tracks import SAFETY_FACTOR
-from core.multibody.trajectory.along import watched_times
-from core.multibody.trajectory.turns import closer_at_ends
-from core.systems.trajectory import Column, How
+from core.multibody.phases.uniform_pieces import ExpandedUniform
+from core.multibody.search.first_of_motion import Expansions
+from core.systems.trajectory import Column, How, MotionEvent
 
 MOST_ARCS = 2000
 """Bounces, of those that accumulate, that are followed one by one."""
@@ -48,6 +52,8 @@ class Stretch:
         Error of the start (s).
     arc : tuple of three lists of ball, or None
         State at the start of an arc, and its constant accelerations.
+    singular : bool
+        Whether it ends at a singular place.
     """
 
     number: int
@@ -56,6 +62,7 @@ class Stretch:
     length: float
     late: float
     arc: tuple[Sequence[Ball], Sequence[Ball], Sequence[Ball]] | None = None
+    singular: bool = False
 
     def states(self, times: Floats) -> WholeStates:
         """Return the states at times since the start of the stretch, shape (t,)."""
@@ -74,11 +81,22 @@ class Stretch:
         phase = replace(self.phase, bounces=None)
         return columns_in(phase, [self.start + float(t) for t in times], self.states(times), how, [group])
 
-    def grid(self, of: Sequence[int] | None = None) -> Floats:
-        """Return times from zero to the length between which nothing turns twice, or only some coordinates."""
-        if self.arc is not None:
-            return np.linspace(0.0, self.length, 5)
-        return closer_at_ends(watched_times(self.phase.models[0].whole, self.length, of=of))
+    @property
+    def expanded(self) -> float:
+        """Time up to which it can be expanded (s): not to a singular place, nor to where a turning slip ends."""
+        ends = self.singular or (self.phase.turning and self.phase.end is not None)
+        return BEFORE_SINGULAR * self.length if ends else self.length
+
+    @property
+    def expansions(self) -> Expansions:
+        """Computations of the motion from its start."""
+        if self.arc is None:
+            return expansions_of(self.phase)
+        q, v, a = self.arc
+        places = [[x, y, z / 2, ZERO, ZERO] for x, y, z in zip(q, v, a, strict=True)]
+        forces = uniform_motion(self.phase.tables[0].table, self.phase.models[0]).multipliers
+        arc = [ExpandedUniform(Expansion(places, forces))]
+        return Expansions(arc, arc)
 
 
 def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:
@@ -93,9 +111,15 @@ def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:
         late = float(phase.start.rad())
         late += SAFETY_FACTOR * max((abs(float(one.time - phase.start)) for one in phase.tracks), default=0.0)
         if phase.bounces is None:
-            yield Stretch(number, phase, phase.start, float(until - phase.start), late)
+            singular = _is_singular(motion.ended, until)
+            yield Stretch(number, phase, phase.start, float(until - phase.start), late, singular=singular)
         else:
             yield from _arcs(number, phase, phase.bounces, until, late)
+
+
+def _is_singular(ended: MotionEvent | None, time: Ball) -> bool:
+    """Return whether a time is as good as that of a singular place."""
+    return ended is not None and ended.kind == "singular" and bool(time > arb(ended.time * BEFORE_SINGULAR))
 
 
 def _arcs(number: int, phase: Phase, bounces: Accumulation, until: Ball, late: float) -> Iterator[Stretch]:

@@ -17,7 +17,6 @@ from flint import arb
 from core.arrays import Floats, Integers
 from core.errors import NotApplicable
 from core.multibody.contacts.contact_states import force_names
-from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equations.packed import pair
 from core.multibody.motion.whole import rates_along
 from core.multibody.phases.phase import Phase, PhaseMotion
@@ -25,15 +24,12 @@ from core.multibody.phases.stretches import Stretch
 from core.multibody.start import energy_of
 from core.multibody.table.connection_effects import Unilateral, WorkTerm
 from core.multibody.table.momenta import work_of_potential
-from core.multibody.trajectory.along import State, power_of, speed_of, velocities_of, watched_times
+from core.multibody.trajectory.along import State, power_of, smooth_times, speed_of, velocities_of
 from core.multibody.trajectory.integrals import integrated
-from core.multibody.trajectory.turns import reversals
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
 _MARGIN = 4.0
-_PARTS = 8
-_NONE = np.zeros(0)
 FRICTION, IMPACTS = "friction.work", "impacts.work"
 
 Power = Callable[[State], tuple[Floats, Floats]]
@@ -76,9 +72,9 @@ class SumsInPhases:
         frames = self.motion.base.measures.coordinates.frames
         sums = {f"{name}.path": self._sum() for name in frames}
         for number, piece in enumerate(self.pieces):
+            nodes = smooth_times(piece.expansions, [list(frame.position) for frame in frames.values()], piece.expanded)
             for name, velocity in velocities_of(frames).items():
-                speed, of = _sized(partial(speed_of, velocity)), list(frames[name].position)
-                self._integrate(sums[f"{name}.path"], number, piece, speed, _reversals(piece, velocity, of), of)
+                self._integrate(sums[f"{name}.path"], number, piece, _sized(partial(speed_of, velocity)), nodes)
         return {name: self._column(one, "m") for name, one in sums.items()}
 
     def works(self) -> dict[str, Column]:
@@ -151,8 +147,7 @@ class SumsInPhases:
         number: int,
         piece: Stretch,
         function: Power,
-        corners: Floats = _NONE,
-        of: Sequence[int] | None = None,
+        nodes: Floats | None = None,
     ) -> None:
         mine, times = self._local(number, piece)
 
@@ -161,11 +156,8 @@ class SumsInPhases:
             own, size = function((states.q, states.v))
             return own, own if states.reference is None else function(states.reference)[0], size
 
-        if piece.arc is None:
-            nodes = watched_times(piece.phase.models[0].whole, piece.length, _PARTS, of=of)
-        else:
-            nodes = np.array([0.0, piece.length])
-        values, errors = integrated(integrand, np.concatenate([nodes, corners]), times)
+        nodes = smooth_times(piece.expansions, [], piece.expanded) if nodes is None else nodes
+        values, errors = integrated(integrand, nodes, times)
         # An event that comes later or earlier changes what is summed up by as much as the summands on either side.
         ends = np.abs(integrand(np.array([0.0, piece.length]))[0])
         one.error += piece.late * float(ends[0])
@@ -264,24 +256,11 @@ def _sized(function: Callable[[State], Floats]) -> Power:
     return sized
 
 
-def _reversals(piece: Stretch, velocity: Callable[[State], Floats], of: Sequence[int]) -> Floats:
-    """Return the times since its start at which a velocity turns against itself in a stretch."""
-
-    def followed(times: Floats) -> Floats:
-        states = piece.states(times)
-        return velocity((states.q, states.v))
-
-    return reversals(followed, piece.grid(of))
-
-
 def _nothing(mine: Integers, times: Floats) -> tuple[Integers, Floats, Floats]:
     return mine, np.zeros(len(times)), np.zeros(len(times))
 
 
 def _determined(phase: Phase, force: str) -> bool:
     """Return whether the scene determines a force in a phase."""
-    model = phase.models[0]
-    measures = model.described.measures
-    known = forces_at_start(measures, multipliers_at_start(measures, model.whole.acceleration))
-    number = next(k for k, one in enumerate(measures.forces) if one.name == force)
-    return known[number].value is not None
+    forces = phase.models[0].described.measures.forces
+    return phase.determined[next(k for k, one in enumerate(forces) if one.name == force)]

@@ -7,6 +7,7 @@ a gap, however small, are known to all their digits.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import is_zero
-from core.multibody.equations.expansion import Expansion
+from core.multibody.equations.expansion import Expansion, Series, slope
 from core.multibody.equations.packed import pair, two_to
 from core.multibody.phases.crossings import state_of
 from core.multibody.phases.watches import Watch
@@ -33,6 +34,28 @@ class UniformPieces(Pieces):
     """
 
     motions: tuple[Expansion, ...] = ()
+
+    def place(self, i: int) -> Curve:
+        """Return a coordinate."""
+        return self.curve([motion.places[i] for motion in self.motions])
+
+    def rate(self, i: int) -> Curve:
+        """Return its rate."""
+        return self.curve([slope(motion.places[i]) for motion in self.motions])
+
+    def multiplier(self, row: int) -> Curve:
+        """Return the multiplier of a row."""
+        return self.curve([motion.multipliers[row] for motion in self.motions])
+
+    def curve(self, each: Sequence[Series]) -> Curve:
+        """Return a quantity from its coefficients on every piece."""
+        values = np.zeros((*self.shape, 2))
+        for p, (series, length) in enumerate(zip(each, self.lengths, strict=True)):
+            _, exponent = math.frexp(length)
+            for k, x in enumerate(series):
+                if not is_zero(x):
+                    values[p, k] = pair(x, k * (exponent - 1))
+        return Curve(values, np.abs(values[..., 0]))
 
 
 @dataclass(frozen=True)
@@ -60,10 +83,4 @@ class ExpandedUniform:
 def along_uniform(watch: Watch, pieces: Pieces) -> Curve:
     """Return what is watched along a motion with constant accelerations."""
     assert isinstance(pieces, UniformPieces)
-    values = np.zeros((*pieces.shape, 2))
-    for p, (motion, length) in enumerate(zip(pieces.motions, pieces.lengths, strict=True)):
-        _, exponent = math.frexp(length)
-        for k, x in enumerate(watch.series(motion)):
-            if not is_zero(x):
-                values[p, k] = pair(x, k * (exponent - 1))
-    return Curve(values, np.abs(values[..., 0]))
+    return pieces.curve([watch.series(motion) for motion in pieces.motions])

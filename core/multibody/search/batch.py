@@ -30,6 +30,8 @@ class Batch:
     Attributes
     ----------
     lengths : ndarray, shape (p,)
+    natural : ndarray, shape (p,)
+        How long they could be.
     usual : float
         How long most of them could be at least.
     plain : ndarray of bool, shape (p,)
@@ -39,6 +41,7 @@ class Batch:
     """
 
     lengths: Floats
+    natural: Floats
     usual: float
     plain: np.ndarray
     of: dict[int, Signs]

@@ -53,6 +53,14 @@ class Curve:
         _multiply_sizes(self.sizes, other.sizes, sizes)
         return Curve(values, sizes)
 
+    def derivative(self, lengths: Floats) -> Curve:
+        """Return the derivative with respect to time, of one power less, on pieces of lengths of shape (p,) (s)."""
+        count = self.sizes.shape[1] - 1
+        values = np.empty((len(lengths), count, 2))
+        differentiate(self.values, lengths, values)
+        sizes = np.arange(1.0, count + 1.0) * self.sizes[:, 1:] / np.abs(lengths)[:, None]
+        return Curve(values, sizes)
+
 
 @kernel()
 def _multiply(first: Floats, second: Floats, found: Floats) -> None:

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import Whole
 from core.multibody.search.curves import Curve
-from core.multibody.search.first_zero import FirstZero, Found
+from core.multibody.search.first_zero import FirstZero
+from core.multibody.search.followed import Found
 from core.multibody.search.pieces import Expanded, ExpandedPlaces, ExpandedWhole, Pieces
 
 Quantity = Callable[[Pieces], Curve]
@@ -56,11 +57,15 @@ class Expansions:
     coarse: tuple[Sequence[Expanded], Sequence[Expanded]] = ((), ())
 
     @classmethod
-    def of(cls, runs: Sequence[tuple[Whole, str]]) -> Expansions:
-        """Return those of a whole motion, by some of its runs."""
+    def of(cls, runs: Sequence[tuple[Whole, str]], coordinates: Sequence[int] | None = None) -> Expansions:
+        """Return those of a whole motion, by some of its runs; of places, those that some coordinates follow."""
         fast = runs if any(whole.is_faster_in_doubles for whole, _ in runs) else []
-        coarse = [ExpandedPlaces(*run, coarse=True) for run in fast], [ExpandedWhole(*run, coarse=True) for run in fast]
-        return cls([ExpandedPlaces(*run) for run in runs], [ExpandedWhole(*run) for run in runs], coarse)
+        coarse = (
+            [ExpandedPlaces(*run, coarse=True, of=coordinates) for run in fast],
+            [ExpandedWhole(*run, coarse=True) for run in fast],
+        )
+        places = [ExpandedPlaces(*run, of=coordinates) for run in runs]
+        return cls(places, [ExpandedWhole(*run) for run in runs], coarse)
 
     def by(self, watched: Watched) -> Sequence[Expanded]:
         """Return those that know a quantity."""

@@ -2,103 +2,20 @@
 
 The motion is followed by pieces, and every quantity is a polynomial on each with a band of error: the difference of two
 computations of the motion, rounding, and the powers left out. Where the latter leave a sign open the motion is expanded
-anew close by.
+anew close by (`followed`).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
-import numpy as np
-
-from core.arrays import Floats
-from core.errors import AccuracyUnreachable, BudgetExceeded
-from core.multibody.algebra.bernstein import (
-    FALLING,
-    MOST_SEGMENTS,
-    NEGATIVE,
-    OPEN,
-    POSITIVE,
-    RISING,
-    UNDECIDED,
-    decided_each,
-    zero_between,
-)
-from core.multibody.search.bands import FLOOR, Quantity, later, with_band
-from core.multibody.search.batch import Batch, Signs, segments, usual_length
+from core.multibody.algebra.bernstein import FALLING, NEGATIVE, OPEN, POSITIVE, RISING, UNDECIDED, zero_between
+from core.multibody.search.bands import Quantity
+from core.multibody.search.batch import segments
+from core.multibody.search.followed import Followed, Found, Interval, Watch
 from core.multibody.search.pieces import Expanded
 
-MOST_PIECES = 60_000
-"""Pieces that one search may take."""
-_AT_ONCE = 256
-"""Pieces that are expanded at once at most: twice as many each time, as what follows an event is expanded in vain."""
-_COARSE = 2.0**-40
-"""Share of the terms that a quantity is wrong by at most in doubles: thousands of roundings."""
-_CLOSER = 2.0**-4
-"""Share of a piece in which it is expanded anew: what is left out then is 2^-84 of what it was."""
 _BELOW = (FALLING, NEGATIVE)
-
-
-@dataclass(frozen=True)
-class Found:
-    """Where a quantity falls below zero.
-
-    Attributes
-    ----------
-    index : int
-        Of the quantity.
-    time, rest : float
-        A pair, to about 2^-50 of a piece.
-    width : float
-        Half the length of the interval in which it is not known on which side of zero it is; zero where it is certain
-        to fall below.
-    """
-
-    index: int
-    time: float
-    rest: float
-    width: float = 0.0
-
-
-@dataclass
-class _Interval:
-    """Part of the time that is still to be searched, and, once expanded, its piece.
-
-    Attributes
-    ----------
-    closely : bool
-        Whether doubles do not do.
-    """
-
-    start: float
-    reach: float
-    batch: Batch | None = None
-    number: int = 0
-    closely: bool = False
-
-
-@dataclass
-class _Watched:
-    """A quantity, and what is known of it so far.
-
-    Attributes
-    ----------
-    above : bool
-        Whether it has been above zero.
-    since : float or None
-        From when on it has been undecided.
-    largest : ndarray
-        Sizes of its terms so far, by powers: what has become small is known no better in doubles.
-    """
-
-    quantity: Quantity
-    jumps: bool
-    index: int
-    above: bool = True
-    since: float | None = None
-    largest: Floats = field(default_factory=lambda: np.zeros(1))
 
 
 class FirstZero:
@@ -116,11 +33,6 @@ class FirstZero:
         -1 for the time before zero.
     coarse : sequence of Expanded
         The same computations in doubles, if they are faster: for where everything is far from zero.
-
-    Attributes
-    ----------
-    below : list of int
-        The quantities that are below zero from the start on: only what they do once they have been above is found.
     """
 
     def __init__(
@@ -131,13 +43,12 @@ class FirstZero:
         way: float = 1.0,
         coarse: Sequence[Expanded] = (),
     ) -> None:
-        self.motions, self.way, self.coarse = motions, way, coarse
-        self.watched = [_Watched(*both, i) for i, both in enumerate(zip(quantities, jumps, strict=True))]
-        self._left: list[_Interval] = []
-        self._reached = 0.0
-        self._last = 0.0
-        self._count, self._at_once = 0, 1
-        self.below: list[int] = []
+        self._motion = Followed(motions, quantities, jumps, way, coarse)
+
+    @property
+    def below(self) -> list[int]:
+        """The quantities that are below zero from the start on: what they do once they have been above is found."""
+        return self._motion.below
 
     def until(self, end: float) -> Found | None:
         """Return the first zero up to a time, or where it is first not known whether there is one.
@@ -152,118 +63,23 @@ class FirstZero:
         AccuracyUnreachable
             Where the motion leaves the range of doubles.
         """
-        if not end > self._reached:
-            return None
-        self._left = [_Interval(self._reached, end - self._reached)]
-        self._reached = end
-        while self._left and self.watched:
-            if self._left[-1].batch is None:
-                self._expand()
-                continue
-            found = self._searched(self._left.pop())
+        for one in self._motion.intervals(end):
+            found = self._searched(one)
             if found is not None:
                 return found
         return None
 
-    def _expand(self) -> None:
-        """Expand the next intervals, those that are longer than pieces have been in parts."""
-        ahead: list[_Interval] = []
-        closely = self._left[-1].closely or not self.coarse
-        # What is zero at the start is divided out of the first piece alone.
-        most = 1 if self._left[-1].start == 0.0 else self._at_once
-        closely = closely or self._left[-1].start == 0.0
-        while self._left and len(ahead) < most and self._left[-1].batch is None:
-            if ahead and self._left[-1].closely != ahead[0].closely:
-                break
-            one = self._left.pop()
-            longest = self._last if self._last > 0.0 else one.reach
-            while len(ahead) < most and one.reach > longest:
-                following = later(one.start, longest)
-                if not following > one.start:
-                    break
-                ahead.append(_Interval(one.start, longest, closely=one.closely))
-                one = _Interval(following, one.reach - (following - one.start), closely=one.closely)
-            if len(ahead) < most:
-                ahead.append(one)
-            else:
-                self._left.append(one)
-        self._count += len(ahead)
-        if self._count > MOST_PIECES:
-            needed = self._count * self._reached / max(ahead[-1].start, self._reached * 2.0**-60)
-            what = "pieces of the motion that are searched"
-            raise BudgetExceeded(what, needed, MOST_PIECES, path=("times",), remedy="ask for a shorter time")
-        self._at_once = min(2 * self._at_once, _AT_ONCE)
-        batch = self._batch(ahead, closely=closely)
-        for number, one in enumerate(ahead):
-            if closely or batch.plain[number]:
-                one.batch, one.number = batch, number
-            else:
-                one.closely = True
-        self._last = batch.usual
-        self._left.extend(reversed(ahead))
-
-    def _batch(self, ahead: Sequence[_Interval], *, closely: bool) -> Batch:
-        """Return pieces, and what every quantity does on them."""
-        times, until = np.array([one.start for one in ahead]), np.array([one.reach for one in ahead])
-        pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
-        lengths = np.abs(pieces[0].lengths)
-        if not np.isfinite(lengths).all():
-            raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))
-        share = np.minimum(until / lengths, 1.0)
-        plain, of = np.ones(len(times), dtype=bool), {}
-        remaining = []
-        for watch in self.watched:
-            values, sizes, band, left_out = with_band(watch.quantity, pieces)
-            if not closely:
-                watch.largest = np.maximum(watch.largest, np.max(sizes, axis=0))
-                band = band + _COARSE * (sizes + watch.largest)
-            if not (np.isfinite(values).all() and np.isfinite(band).all()):
-                raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))
-            power = values.shape[1]
-            if times[0] == 0.0:
-                values, band, power = self._divided(watch, values, FLOOR * sizes, band)
-                if not power:
-                    continue
-            remaining.append(watch)
-            counts = np.empty(len(times), dtype=np.int64)
-            ends, signs = np.empty((len(times), MOST_SEGMENTS)), np.empty((len(times), MOST_SEGMENTS), dtype=np.int64)
-            decided_each(values, band, left_out, power, share, watch.above, counts, ends, signs)
-            plain &= (counts == 1) & (signs[:, 0] == POSITIVE)
-            of[watch.index] = Signs(values, counts, ends, signs)
-        self.watched = remaining
-        return Batch(lengths, usual_length(pieces[0].natural, lengths), plain, of)
-
-    def _divided(self, watch: _Watched, values: Floats, rounded: Floats, band: Floats) -> tuple[Floats, Floats, int]:
-        """Return the only piece of a quantity at time zero, with what is zero there but for rounding divided out.
-
-        How far two computations are apart does not matter for that: each of them has the event that begins there. The
-        power of the first coefficient that is left out follows; it is zero for what vanishes throughout.
-        """
-        assert len(values) == 1
-        known = np.abs(values[0, :, 0]) > rounded[0]
-        if not known.any():
-            return values, band, 0
-        zeros, count = int(np.argmax(known)), values.shape[1]
-        shifted, errors = np.zeros_like(values), np.zeros_like(band)
-        shifted[:, : count - zeros], errors[:, : count - zeros] = values[:, zeros:], band[:, zeros:]
-        # Of what is left the first that is known decides the sign just after the start.
-        sure = np.abs(values[0, :, 0]) > band[0]
-        watch.above = bool(values[0, int(np.argmax(sure)) if sure.any() else zeros, 0] > 0.0)
-        if not watch.above and watch.index not in self.below:
-            self.below.append(watch.index)
-        return shifted, errors, count - zeros
-
-    def _searched(self, one: _Interval) -> Found | None:
+    def _searched(self, one: Interval) -> Found | None:
         """Return what is found in an interval; what remains of it is left for later."""
         batch, number = one.batch, one.number
         assert batch is not None
         length = float(batch.lengths[number])
         share = min(one.reach / length, 1.0)
-        if batch.plain[number] and all(watch.above and watch.since is None for watch in self.watched):
-            self._leave(one, length, 2.0)
+        if batch.plain[number] and all(watch.above and watch.since is None for watch in self._motion.watched):
+            self._motion.leave(one, length, 2.0)
             return None
         open_from = 2.0
-        for watch in self.watched:
+        for watch in self._motion.watched:
             own = batch.of[watch.index]
             start = 0.0
             for end, sign in segments(own, number):
@@ -273,30 +89,14 @@ class FirstZero:
                     break
                 start = end
         until = min(open_from, share)
-        found = [self._scanned(one, watch, until) for watch in self.watched]
+        found = [self._scanned(one, watch, until) for watch in self._motion.watched]
         hits = [hit for hit in found if hit is not None]
         if hits:
-            return min(hits, key=lambda hit: (abs(hit.time), self.way * hit.rest))
-        self._leave(one, length, open_from)
+            return min(hits, key=lambda hit: (abs(hit.time), self._motion.way * hit.rest))
+        self._motion.leave(one, length, open_from)
         return None
 
-    def _leave(self, one: _Interval, length: float, open_from: float) -> None:
-        """Put back what is still to be searched of an interval."""
-        end = one.start + one.reach
-        if open_from < min(one.reach / length, 1.0):
-            start = later(one.start, open_from * length)
-            closer = _CLOSER * length
-            following = later(start, closer)
-            if start < following < end:
-                self._left.append(_Interval(following, end - following))
-            # Where there is no double between two times the rest follows from the same start.
-            self._left.append(_Interval(start, closer, closely=True))
-        elif one.reach > length:
-            start = later(one.start, length)
-            if start < end:
-                self._left.append(_Interval(start, end - start))
-
-    def _scanned(self, one: _Interval, watch: _Watched, until: float) -> Found | None:
+    def _scanned(self, one: Interval, watch: Watch, until: float) -> Found | None:
         """Return where a quantity falls below zero in the first part of an interval, or comes too near."""
         assert one.batch is not None
         own, length = one.batch.of[watch.index], float(one.batch.lengths[one.number])
@@ -313,21 +113,15 @@ class FirstZero:
                     middle, width = 0.5 * (since + here), 0.5 * (here - since)
                     if sign in (NEGATIVE, RISING):
                         # From below zero Newton's method comes to the last zero, not to that at the start.
-                        return Found(watch.index, self.way * here, 0.0)
+                        return Found(watch.index, self._motion.way * here, 0.0)
                     if watch.jumps and since > 0.0:
-                        return Found(watch.index, self.way * middle, 0.0, max(width, 2.0**-52 * middle))
+                        return Found(watch.index, self._motion.way * middle, 0.0, max(width, 2.0**-52 * middle))
             if watch.above and sign == FALLING:
                 share, tail = zero_between(own.curves[one.number], start, min(end, 1.0))
-                return self._at(one.start, length, watch, share, tail)
+                return self._motion.at(one.start, length, watch, share, tail)
             if watch.above and sign == NEGATIVE:
-                return self._at(one.start, length, watch, start, 0.0)
+                return self._motion.at(one.start, length, watch, start, 0.0)
             if sign in (POSITIVE, RISING):
                 watch.above = True
             start = end
         return None
-
-    def _at(self, start: float, length: float, watch: _Watched, share: float, tail: float) -> Found:
-        moved = share * length
-        time = start + moved
-        rounded = moved - (time - start) if start >= moved else start - (time - moved)
-        return Found(watch.index, self.way * time, self.way * (rounded + tail * length))

@@ -169,27 +169,35 @@ class ExpandedWhole:
 class ExpandedPlaces:
     """The same without multipliers, by the reduced table.
 
-    A length that reaches zero is a singular place of the table as described, and often none of the reduced one.
+    A length that reaches zero is a singular place of the table as described, and often none of the reduced one. The
+    attributes are those of `ExpandedWhole`, and the coordinates that are of interest: parts that they do not follow are
+    left out, as if they were at zero.
     """
 
     whole: Whole
     kind: str = "fine"
     coarse: bool = False
+    of: Sequence[int] | None = None
 
     def __call__(self, times: Floats, reach: Floats) -> Pieces:
         """Return the pieces; it raises as `ExpandedWhole` does."""
-        arrays, units, _ = self.whole.reduced_arrays
+        # What stays follows none.
+        parts = self.whole.parts_of(self.of) or self.whole.parts_of(None)
+        arrays, units, where = self.whole.reduced_arrays(parts)
         states = self.whole.reduced_in_doubles if self.coarse else self.whole.reduced_in_pairs
-        lengths, series, sizes = _expanded(arrays, units, states(times, self.kind), reach)
+        z, w = states(times, self.kind)
+        lengths, own, own_sizes = _expanded(arrays, units, (z[:, where], w[:, where]), reach)
+        series, sizes = np.zeros((*z.shape[:2], ORDER + 1, 2)), np.zeros((*z.shape[:2], ORDER + 1))
+        series[:, where], sizes[:, where] = own[:, : len(where)], own_sizes[:, : len(where)]
         slopes, offsets = self.whole.affine
-        n = len(units.lengths)
+        n = z.shape[1]
         # Coefficients of one power after another, of which the first alone has offsets.
-        powers = np.moveaxis(series[:, :n], 2, 0)
+        powers = np.moveaxis(series, 2, 0)
         count = len(times)
         mapped = spread(slopes, np.zeros_like(offsets), np.ascontiguousarray(powers).reshape((ORDER + 1) * count, n, 2))
         mapped[:count] = spread(slopes, offsets, np.ascontiguousarray(powers[0]))
         places = np.moveaxis(mapped.reshape(ORDER + 1, count, len(offsets), 2), 0, 2)
-        place_sizes = np.einsum("ij,pjk->pik", np.abs(slopes[..., 0]), sizes[:, :n])
+        place_sizes = np.einsum("ij,pjk->pik", np.abs(slopes[..., 0]), sizes)
         place_sizes[..., 0] += np.abs(offsets[:, 0])
         nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
         return Pieces(*lengths, places, place_sizes, nothing, nothing[..., 0])

@@ -4,83 +4,79 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from math import copysign, inf
+from math import copysign
 
 import numpy as np
 from flint import arb
 
 from core.arrays import Floats
 from core.balls import precision
-from core.errors import BudgetExceeded
-from core.multibody.algebra.polynomials import BITS, Ball
+from core.multibody.algebra.polynomials import BITS, ONE, Ball
+from core.multibody.motion.motion import Motion
+from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import Whole, values
+from core.multibody.search.curves import Curve
+from core.multibody.search.every_zero import EveryZero
+from core.multibody.search.first_of_motion import Expansions
+from core.multibody.search.pieces import Pieces
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.frames import Frame
 from core.multibody.table.momenta import work_of_potential
-from core.multibody.trajectory.integrals import Integrand, integrated
-from core.multibody.trajectory.turns import closer_at_ends, reversals
+from core.multibody.trajectory.events import runs_of
+from core.multibody.trajectory.integrals import POINTS_OF_INTERVAL, Integrand, integrated, require_few_points
 from core.systems.trajectory import Column, How
-
-MOST_NODES = 20_000
-"""Times at which a motion is looked at between the start and the last sample."""
 
 _SMALL = 2.0**-50
 _MARGIN = 4.0
-_PARTS = 8
-"""A motion proposes eight times for every step of its series; within a step an integrand is smooth."""
-
 State = tuple[Floats, Floats]
 
 
-def watched_times(whole: Whole, end: float, every: int = 1, *, of: Sequence[int] | None = None) -> Floats:
-    """Return times from zero to `end` so close that nothing turns twice between two of them, whole periods included.
+def smooth_times(expansions: Expansions, places: Sequence[Sequence[int]], end: float) -> Floats:
+    """Return times from zero to `end` between which the motion is one polynomial and no velocity turns back.
 
     Parameters
     ----------
-    every : int, optional
-        Of the times that each motion proposes, only each `every`-th is taken.
-    of : sequence of int, optional
-        Coordinates of the scene, if only these are watched.
+    places : sequence of sequence of int
+        Coordinates of the points of which the velocities are followed.
+    end : float
+        Negative for the time before the start.
 
     Raises
     ------
     BudgetExceeded
-        Where they would be too many.
+        Where they are more than can be summed up over.
     """
-    found = [np.array([0.0, end])]
-    motions = [motion for _, motion in whole.parts] if of is None else whole.motions_of(of)
-    for motion in motions:
-        period = None if motion.period is None else float(motion.period)
-        if period is None or period >= abs(end):
-            found.append(motion.nodes(end)[::every])
-            continue
-        once = np.abs(motion.nodes(copysign(period, end))[::every])
-        # A period may be so short that their number is no double.
-        periods = abs(end) / period if period > 0.0 else inf
-        if (periods + 1.0) * len(once) > MOST_NODES:
-            what = "times at which the motion is looked at"
-            remedy = "ask for earlier times, or without what is summed up or searched along the way"
-            raise BudgetExceeded(what, (periods + 1.0) * len(once), MOST_NODES, path=("outputs",), remedy=remedy)
-        count = int(periods) + 1
-        found.append(copysign(1.0, end) * (np.arange(count)[:, None] * period + once).ravel())
-    times = np.unique(np.abs(np.concatenate(found)))
-    times = times[times <= abs(end)]
-    if len(times) > MOST_NODES:
-        remedy = "ask for earlier times"
-        raise BudgetExceeded(
-            "times at which the motion is looked at", len(times), MOST_NODES, path=("outputs",), remedy=remedy
-        )
-    return copysign(1.0, end) * times
+    quantities = [partial(_square_of_speed, of) for of in places]
+    # What never vanishes is followed to the end.
+    zeros = EveryZero(expansions.places, [*quantities, _one], expansions.coarse[0], copysign(1.0, end))
+    corners = []
+    for zero in zeros.until(abs(end)):
+        corners.append(zero.time)
+        require_few_points(POINTS_OF_INTERVAL * len(zeros.starts))
+    times = np.unique(np.abs([0.0, *zeros.starts, *corners]))
+    return copysign(1.0, end) * np.append(times[times < abs(end)], abs(end))
 
 
-def period_within(whole: Whole, end: float) -> Ball | None:
-    """Return the period (s) after which a motion is the same again, if that is shorter than a time."""
+def _square_of_speed(of: Sequence[int], pieces: Pieces) -> Curve:
+    total = pieces.nothing()
+    for i in of:
+        rate = pieces.rate(i)
+        total = total.plus(ONE, rate.times(rate))
+    return total
+
+
+def _one(pieces: Pieces) -> Curve:
+    return Curve.constant(ONE, pieces.shape)
+
+
+def period_within(motions: Sequence[Motion], end: float) -> Ball | None:
+    """Return the period (s) after which some motions are the same again, if that is shorter than a time."""
     periods = {
         None if motion.period is None else float(motion.period): motion.period
-        for _, motion in whole.parts
+        for motion in motions
         if motion.name != "rest"
     }
-    windings = any(getattr(motion, "winding", 0.0) for _, motion in whole.parts)
+    windings = any(getattr(motion, "winding", 0.0) for motion in motions)
     if len(periods) != 1 or windings:
         return None
     ((approximate, period),) = periods.items()
@@ -101,6 +97,7 @@ class Along:
 
     def __init__(self, whole: Whole, times: Floats, how: How, *, finer: bool) -> None:
         self.whole, self.times, self.how, self.finer = whole, times, how, finer
+        self._known: dict[tuple[tuple[int, ...], float], Floats] = {}
 
     def works(self) -> dict[str, Column]:
         """Return the work that gravity, springs, dampers, motors and forces have done on the scene (J)."""
@@ -109,8 +106,7 @@ class Along:
             if work.potential is not None:
                 found[f"{work.name}.work"] = self._by_potential(work)
             else:
-                nodes = partial(watched_times, self.whole, every=_PARTS)
-                found[f"{work.name}.work"] = self._integral(power_of(self.whole, work), nodes, "J")
+                found[f"{work.name}.work"] = self._integral(power_of(self.whole, work), "J")
         return found
 
     def paths(self) -> dict[str, Column]:
@@ -118,19 +114,19 @@ class Along:
         found = {}
         frames = self.whole.measures.coordinates.frames
         for name, velocity in velocities_of(frames).items():
-            nodes = partial(self._nodes, velocity, list(frames[name].position))
-            found[f"{name}.path"] = self._integral(partial(speed_of, velocity), nodes, "m")
+            found[f"{name}.path"] = self._integral(partial(speed_of, velocity), "m", frames[name].position)
         return found
 
-    def _nodes(self, velocity: Callable[[State], Floats], of: Sequence[int], end: float) -> Floats:
-        """Return times up to `end` between which the length of a velocity is smooth."""
-
-        def followed(times: Floats) -> Floats:
-            states = self.whole.states(times, finer=self.finer)
-            return velocity((states.q, states.v))
-
-        times = watched_times(self.whole, end, of=of)
-        return np.concatenate([times[::_PARTS], times[-1:], reversals(followed, closer_at_ends(times))])
+    def _nodes(self, parts: tuple[int, ...], end: float) -> Floats:
+        """Return times up to `end` between which functions of some parts are smooth, and the speeds in them."""
+        if (parts, end) not in self._known:
+            frames = self.whole.measures.coordinates.frames.values()
+            moved = [list(frame.position) for frame in frames if self.whole.parts_of(frame.position) == parts]
+            of = sorted({i for place in moved for i in place}) if moved else None
+            # The last sample may be as good as at a singular place; beyond, halves are as smooth.
+            until = BEFORE_SINGULAR * end
+            self._known[parts, end] = smooth_times(Expansions.of(runs_of(self.whole), of), moved, until)
+        return self._known[parts, end]
 
     def _by_potential(self, work: WorkTerm) -> Column:
         states = self.whole.states(self.times, finer=self.finer)
@@ -142,13 +138,15 @@ class Along:
             error += _MARGIN * float(np.max(np.abs(done - other), initial=0.0))
         return Column(done, "J", error, self.how)
 
-    def _integral(self, function: Callable[[State], Floats], nodes: Callable[[float], Floats], unit: str) -> Column:
+    def _integral(self, function: Callable[[State], Floats], unit: str, of: Sequence[int] | None = None) -> Column:
         def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
             states = self.whole.states(times, finer=self.finer)
             own = function((states.q, states.v))
             return own, own if states.reference is None else function(states.reference), np.abs(own)
 
-        total, error = _from_the_start(self.whole, integrand, nodes, self.times)
+        parts = self.whole.parts_of(of)
+        motions = [self.whole.parts[k][1] for k in parts]
+        total, error = _from_the_start(motions, integrand, partial(self._nodes, parts), self.times)
         return Column(total, unit, float(np.max(error, initial=0.0)), self.how)
 
 
@@ -188,22 +186,22 @@ def power_of(whole: Whole, work: WorkTerm) -> Callable[[State], Floats]:
 
 
 def _from_the_start(
-    whole: Whole, integrand: Integrand, nodes: Callable[[float], Floats], times: Floats
+    motions: Sequence[Motion], integrand: Integrand, nodes: Callable[[float], Floats], times: Floats
 ) -> tuple[Floats, Floats]:
     total, error = np.zeros(len(times)), np.zeros(len(times))
     for way in (1.0, -1.0):
         chosen = way * times > 0.0
         if np.any(chosen):
-            total[chosen], error[chosen] = _one_way(whole, integrand, nodes, times[chosen])
+            total[chosen], error[chosen] = _one_way(motions, integrand, nodes, times[chosen])
     return total, error
 
 
 def _one_way(
-    whole: Whole, integrand: Integrand, nodes: Callable[[float], Floats], times: Floats
+    motions: Sequence[Motion], integrand: Integrand, nodes: Callable[[float], Floats], times: Floats
 ) -> tuple[Floats, Floats]:
     """Return integrals to times of one sign; of a motion that repeats, those of whole periods are multiples of one."""
     end = float(times[np.argmax(np.abs(times))])
-    period = period_within(whole, abs(end))
+    period = period_within(motions, abs(end))
     if period is None:
         return integrated(integrand, nodes(end), times)
     once = copysign(float(period), end)

@@ -15,12 +15,14 @@ from core.multibody.motion.whole import Whole
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.curves import Curve
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion, Watched
-from core.multibody.search.first_zero import Found
+from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located
 from core.multibody.search.pieces import Expanded, Pieces, repeats_after
 from core.multibody.table.connection_effects import Limit
 from core.systems.trajectory import MotionEvent
 
+OF_LENGTHS = ("singular", "end-of-chain")
+"""Ends at which a length is zero: there the motion cannot be expanded."""
 _LEAST = 2.0**-1000
 """Force (N) beside which others are lost below the range of doubles."""
 
@@ -39,7 +41,7 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEve
     if not watched or end == 0.0:
         return ended
     _require_weight(whole, watched)
-    expansions = Expansions.of(_runs(whole))
+    expansions = Expansions.of(runs_of(whole))
     best: MotionEvent | None = None
     for group, reach in _groups(whole, watched, end):
         quantities = [
@@ -79,7 +81,7 @@ def _singular(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEvent
     return found
 
 
-def _runs(whole: Whole) -> list[tuple[Whole, str]]:
+def runs_of(whole: Whole) -> list[tuple[Whole, str]]:
     """Return the motion by the run that is answered and by one that is more right, or in closed form."""
     if all(motion.how == "closed form" for _, motion in whole.parts):
         return [(whole, "fine")]

@@ -21,6 +21,8 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _DEPTH = 60
 MOST_POINTS = 400_000
 """Times at which an integrand is evaluated."""
+POINTS_OF_INTERVAL = 3 * len(_POINTS)
+"""At least: each interval is compared with its halves."""
 _FINE = 2.0**-50
 """Share of a piece up to which two sums of ten rounded terms differ by rounding alone."""
 
@@ -56,10 +58,7 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
     points = len(low) * len(_POINTS)
     for depth in range(_DEPTH):
         points += 2 * len(low) * len(_POINTS)
-        if points > MOST_POINTS:
-            what = "times at which what is summed up along the motion is evaluated"
-            remedy = "ask for earlier times, or without paths and works"
-            raise BudgetExceeded(what, points, MOST_POINTS, path=("outputs",), remedy=remedy)
+        require_few_points(points)
         middle = 0.5 * (low + high)
         halves = _gauss(integrand, np.concatenate([low, middle]), np.concatenate([middle, high]))
         (first, finer), (_, by_reference), (_, finer_size) = (
@@ -79,6 +78,14 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
     bound = np.concatenate([np.zeros(1), np.cumsum(error)])
     at = np.searchsorted(ends, np.abs(times))
     return total[at], bound[at]
+
+
+def require_few_points(points: int) -> None:
+    """Raise `BudgetExceeded` where an integrand would have to be evaluated too often."""
+    if points > MOST_POINTS:
+        what = "times at which what is summed up along the motion is evaluated"
+        remedy = "ask for earlier times, or without paths and works"
+        raise BudgetExceeded(what, points, MOST_POINTS, path=("outputs",), remedy=remedy)
 
 
 def _gauss(integrand: Integrand, low: Floats, high: Floats) -> tuple[Floats, Floats, Floats]:

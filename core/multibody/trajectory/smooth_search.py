@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import count, islice
 
 import numpy as np
+from flint import arb
 
 from core.arrays import Floats
 from core.errors import AccuracyUnreachable
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.motion.whole import Whole
-from core.multibody.trajectory.along import watched_times
+from core.multibody.search.first_of_motion import Expansions
+from core.multibody.trajectory.along import period_within
 from core.multibody.trajectory.column_errors import PLACES_BETWEEN, relative
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES, Columns
+from core.multibody.trajectory.events import runs_of
 from core.multibody.trajectory.occurrences import (
+    MOST_FOUND,
+    ROUNDED,
     ExtremesOf,
-    Sampler,
     When,
     component,
-    coordinates_of,
-    extremes,
-    occurrences,
+    require_in_range,
     unknown,
 )
+from core.multibody.trajectory.quantities import sought_in
+from core.multibody.trajectory.search_along import Hit, Sampler, SearchAlong
 from core.systems.trajectory import Column, How
+
+_PAST = 1.0 + 2.0**-20
+"""Share of a period that is searched: what touches a value at the start does so at the end."""
+_WOUND = 2.0**-20
+"""Share of the largest value by which what winds on differs from its start after a period, and nothing else does."""
 
 
 @dataclass
@@ -37,6 +48,8 @@ class SmoothSearch:
         Which of the forces the scene determines.
     end : float
         Latest time (s).
+    expanded : float
+        Time up to which the motion can be expanded (s): not quite to a singular place.
     accuracy : float
         Largest error of a quantity, relative to the largest value in columns of its unit, that is tolerated.
     numerical : bool
@@ -47,6 +60,7 @@ class SmoothSearch:
     how: How
     determined: Sequence[bool]
     end: float
+    expanded: float
     accuracy: float
     numerical: bool
     finer: bool
@@ -65,13 +79,89 @@ class SmoothSearch:
         ranges: list[SceneExtremes] = []
         for index, output in enumerate(outputs):
             if isinstance(output, When):
-                of = coordinates_of(output.quantity, self.whole.measures.coordinates.frames)
-                times.extend(
-                    occurrences(watched_times(self.whole, self.end, of=of), self._sampler(output, index), output)
-                )
+                times.extend(self._occurrences(output, index))
             elif isinstance(output, ExtremesOf):
-                ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, self.end))
+                ranges.append(self._extremes(output, index))
         return tuple(times), tuple(ranges)
+
+    def _occurrences(self, search: When, index: int) -> list[Occurrence]:
+        """Return the times after the start at which a quantity takes a value."""
+        along = self._along(search, index)
+        column = along.sampler(np.array([0.0, self.end]))
+        require_in_range(search.quantity, column.error)
+        wanted = MOST_FOUND if search.nth is None else search.nth
+        found = []
+        for number, hit in enumerate(islice(self._hits(along, search.equals), wanted), 1):
+            if search.nth in (None, number):
+                time = min(float(hit.time), self.end)
+                error = hit.error + 2.0**-52 * time
+                found.append(Occurrence(search.quantity, search.equals, column.unit, number, time, error, self.how))
+        return found
+
+    def _hits(self, along: SearchAlong, value: float) -> Iterator[Hit]:
+        """Yield the times at which a quantity has a value; of one that repeats, those of a period again and again."""
+        noise = ROUNDED * abs(value)
+        period = self._period(along)
+        if period is None:
+            yield from along.hits(value, noise)
+            return
+        late = float(period.rad())
+        once = [
+            hit
+            for hit in replace(along, end=_PAST * float(period)).hits(value, noise)
+            if not float(hit.time - period) > 2.0 * (hit.error + late)
+        ]
+        for k in count():
+            for hit in once:
+                time = hit.time + k * period
+                if float(time) - hit.error > self.end:
+                    return
+                yield Hit(arb(time.mid()), hit.error + k * late)
+            if not once:
+                return
+
+    def _extremes(self, search: ExtremesOf, index: int) -> SceneExtremes:
+        """Return the least and the largest value between the start and the end, or of a period that is shorter."""
+        along = self._along(search, index)
+        period = self._period(along)
+        end = self.end if period is None else float(period)
+        column = along.sampler(np.array([0.0, end]))
+        require_in_range(search.quantity, column.error, *column.values)
+        least, largest = replace(along, end=end).extremes()
+        error = along.sampler(np.array([least.time, largest.time])).error
+        return SceneExtremes(
+            search.quantity,
+            column.unit,
+            least.value,
+            least.time,
+            largest.value,
+            largest.time,
+            error,
+            end,
+            period is not None,
+            {"least_time": least.error, "largest_time": largest.error},
+        )
+
+    def _period(self, along: SearchAlong) -> Ball | None:
+        """Return the period of a quantity, None where it has none that is shorter than what is searched.
+
+        What only winds on in a motion that repeats, as an angle does, has another value after a period.
+        """
+        motions = [self.whole.parts[k][1] for k in self.whole.parts_of(along.sought.follows)]
+        period = period_within(motions, self.end / _PAST)
+        if period is None or any(np.any(getattr(motion, "shift", 0.0)) for motion in motions):
+            return None
+        values = along.sampler(np.array([0.0, float(period), *(float(period) * PLACES_BETWEEN)])).values
+        return period if abs(values[1] - values[0]) <= _WOUND * np.max(np.abs(values)) else None
+
+    def _along(self, search: When | ExtremesOf, index: int) -> SearchAlong:
+        """Return the search along a quantity."""
+        sampler = self._sampler(search, index)
+        sought = sought_in(self.whole, self.determined)(search.quantity)
+        assert sought is not None
+        kinds = ("fine", "check") if self.finer and self.numerical else None
+        runs = runs_of(self.whole) if kinds is None else [(self.whole, kind) for kind in kinds]
+        return SearchAlong(Expansions.of(runs, sought.follows), sought, sampler, self.end, self.expanded)
 
     def _sampler(self, search: When | ExtremesOf, index: int) -> Sampler:
         """Return the samples of a quantity, from the columns among which it is."""

@@ -13,7 +13,7 @@ from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.language.scene import Scene
 from core.multibody.motion.generic_equation import SceneSystem
 from core.multibody.motion.modelling import Modelled
-from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.numerical import BEFORE_SINGULAR, Numerical
 from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.table.connection_effects import Limit
 from core.multibody.trajectory.along import Along
@@ -27,7 +27,7 @@ from core.multibody.trajectory.column_errors import (
     worst,
 )
 from core.multibody.trajectory.columns import NEAREST, Columns
-from core.multibody.trajectory.events import first_event
+from core.multibody.trajectory.events import OF_LENGTHS, first_event
 from core.multibody.trajectory.inherited import NO_HORIZON_NEEDED, changes, horizon, instants, with_inherited
 from core.multibody.trajectory.nearest import Nearest
 from core.multibody.trajectory.occurrences import ExtremesOf, When
@@ -323,10 +323,12 @@ class DescribedSystem:
         """
         if all(isinstance(output, str) for output in self.outputs):
             return None
-        end = min((event.time for event in found.events if event.time >= 0.0), default=np.inf)
-        end = min(end, float(np.max(times)))
+        latest = float(np.max(times))
+        ended = next((event for event in found.events if 0.0 <= event.time <= latest), None)
+        end = latest if ended is None else ended.time
+        expanded = end if ended is None or ended.kind not in OF_LENGTHS else BEFORE_SINGULAR * end
         search = SmoothSearch(
-            self.whole, self.how, self.determined, end, found.accuracy.requested, self.numerical, self.finer
+            self.whole, self.how, self.determined, end, expanded, found.accuracy.requested, self.numerical, self.finer
         )
         with np.errstate(over="ignore", invalid="ignore"):
             return search.found(self.outputs)

@@ -10,7 +10,7 @@ from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.motion.free_body import FreeBody
 from core.multibody.motion.modelling import modelled
-from core.multibody.search import first_zero
+from core.multibody.search import followed
 from core.multibody.solve import solve_scene
 from core.multibody.trajectory.occurrences import ExtremesOf
 from tests.core.multibody.judge import judged, numerical
@@ -108,7 +108,7 @@ def test_a_slow_approach_of_many_turns_is_refused_and_no_touch_is_missed(monkeyp
     w, x, y, z = column(answer, "b.attitude").values.T
     assert np.all(column(answer, "b.position").values[:, 2] + 2.0 * (y * z + w * x) > 0.0)
     # Of the pieces that are allowed a few, as all of them take long.
-    monkeypatch.setattr(first_zero, "MOST_PIECES", 2_000)
+    monkeypatch.setattr(followed, "MOST_PIECES", 2_000)
     with pytest.raises(BudgetExceeded, match="pieces of the motion"):
         solve_scene(read(drifting(10_000)), [10_000], ("trajectory",))
 

@@ -15,9 +15,10 @@ from core.arrays import Floats
 from core.balls import precision
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import BITS
-from core.multibody.search import first_zero
+from core.multibody.search import followed
 from core.multibody.search.curves import Curve
-from core.multibody.search.first_zero import FirstZero, Found
+from core.multibody.search.first_zero import FirstZero
+from core.multibody.search.followed import Found
 from core.multibody.search.location import located
 from core.multibody.search.pieces import COEFFICIENTS, Pieces
 from core.multibody.search.taylor import ORDER
@@ -173,7 +174,7 @@ def test_a_zero_is_located_to_pairs_with_its_state() -> None:
 
 
 def test_a_search_of_too_many_pieces_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(first_zero, "MOST_PIECES", 20)
+    monkeypatch.setattr(followed, "MOST_PIECES", 20)
     assert first(level("2"), end=9.9) is None
     with pytest.raises(BudgetExceeded):
         first(level("2"), end=1e4)

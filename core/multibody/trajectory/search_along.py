@@ -1,0 +1,163 @@
+"""Times at which a quantity has a value, and its extremes, on an interval on which the motion is smooth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
+from core.errors import AccuracyUnreachable
+from core.multibody.algebra.polynomials import Ball
+from core.multibody.search.bands import FLOOR, SAFETY_FACTOR, Quantity
+from core.multibody.search.every_zero import EveryZero
+from core.multibody.search.first_of_motion import Expansions
+from core.multibody.search.followed import Found
+from core.multibody.search.location import NotLocated, located
+from core.multibody.search.pieces import Expanded
+from core.multibody.trajectory.quantities import Sought, shifted
+from core.systems.trajectory import Column
+
+Sampler = Callable[[Floats], Column]
+"""From times to the column of one quantity, whose values have shape (t,)."""
+
+_MOST_AT_ONCE = 256
+"""Zeros of which the quantity is evaluated at once at most."""
+_LEAST = 2.0**-1000
+"""Time (s) below which no power of it is a double."""
+
+
+@dataclass(frozen=True)
+class Hit:
+    """A time at which a quantity has a value.
+
+    Attributes
+    ----------
+    time : ball
+        Since the start of the interval (s).
+    error : float
+    """
+
+    time: Ball
+    error: float
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A least or largest value.
+
+    Attributes
+    ----------
+    value, time : float
+    error : float
+        Of the time (s).
+    """
+
+    value: float
+    time: float
+    error: float
+
+
+@dataclass(frozen=True)
+class SearchAlong:
+    """A search from time zero on.
+
+    Attributes
+    ----------
+    expansions : Expansions
+        Computations of the motion.
+    sought : Sought
+    sampler : callable
+        Values of the quantity with their error, in doubles.
+    end : float
+        Latest time (s).
+    expanded : float
+        Time up to which the motion can be expanded (s).
+    """
+
+    expansions: Expansions
+    sought: Sought
+    sampler: Sampler
+    end: float
+    expanded: float = math.inf
+
+    def hits(self, value: float, noise: float) -> Iterator[Hit]:
+        """Yield the times after zero at which the quantity has a value, in their order.
+
+        Parameters
+        ----------
+        noise : float
+            The quantity has the value at time zero if it differs from it by no more: it leaves it there.
+        """
+        quantity = self.sought.less(arb(value))
+        if abs(float(self.sampler(np.zeros(1)).values[0]) - value) <= noise:
+            start = quantity(self._motions[0](np.zeros(1), np.array([self.end]))).values[0, 0]
+            quantity = partial(shifted, quantity, arb(float(start[0])) + arb(float(start[1])))
+        zeros = EveryZero(self._motions, [quantity], self._coarse).until(min(self.end, self.expanded))
+        count = 1
+        while batch := list(islice(zeros, count)):
+            for one in self._with_the_value(batch, value):
+                hit = self._located(quantity, one)
+                if float(hit.time) - hit.error <= self.end:
+                    yield hit
+            count = min(2 * count, _MOST_AT_ONCE)
+
+    def extremes(self) -> tuple[Extreme, Extreme]:
+        """Return the least and the largest value."""
+        quantities = self.sought.turning()
+        zeros = EveryZero(self._motions, quantities, self._coarse)
+        turns = [one for one in zeros.until(min(self.end, self.expanded)) if one.time < self.end]
+        times = np.array([0.0, *(one.time for one in turns), self.end])
+        column = self.sampler(times)
+        found = []
+        for sign in (-1.0, 1.0):
+            values = sign * column.values
+            # The first of those that cannot be told apart from the largest: the quantity is monotonic in between.
+            alike = values >= np.max(values) - 2.0 * column.error
+            k = int(np.argmax(alike))
+            last = k + int(np.argmin(np.append(alike[k:], False))) - 1
+            error = float(times[last] - times[k])
+            if 0 < k < len(times) - 1:
+                error += self._located(quantities[turns[k - 1].index], turns[k - 1]).error
+                error += 2.0**-52 * float(times[k])
+            found.append(Extreme(float(column.values[k]), float(times[k]), error))
+        return found[0], found[1]
+
+    @property
+    def _motions(self) -> tuple[Expanded, ...]:
+        return tuple(self.expansions.forces if self.sought.of_forces else self.expansions.places)
+
+    @property
+    def _coarse(self) -> tuple[Expanded, ...]:
+        return tuple(self.expansions.coarse[1 if self.sought.of_forces else 0])
+
+    def _with_the_value(self, zeros: list[Found], value: float) -> list[Found]:
+        """Return those zeros at which the quantity has the value."""
+        if not self.sought.ambiguous:
+            return zeros
+        times = np.minimum(np.array([one.time for one in zeros]), self.end)
+        values = self.sampler(times).values
+        return [one for one, x in zip(zeros, values, strict=True) if self.sought.has(float(x), value)]
+
+    def _located(self, quantity: Quantity, found: Found) -> Hit:
+        """Return a zero to the last digits of pairs, with the error of its time."""
+        if found.width > 0.0:
+            return Hit(arb(found.time), found.width)
+        reach = max(found.time, _LEAST)
+        try:
+            zeros = [located(motion, quantity, found.time, found.rest, reach) for motion in self._motions]
+        except NotLocated:
+            raise AccuracyUnreachable(
+                None,
+                1.0,
+                f"a zero near {found.time:.17g} s cannot be located",
+                path=("outputs",),
+                remedy="ask for an earlier time",
+            ) from None
+        apart = abs(float(zeros[0].time - zeros[-1].time))
+        return Hit(zeros[0].time, FLOOR * zeros[0].width + SAFETY_FACTOR * apart)
