@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from core.multibody.audit.bodies import Reader
 from core.multibody.audit.placement import STEP, Placement, Pose, Twist
@@ -37,54 +38,51 @@ class Coordinates:
 
     Attributes
     ----------
-    names : list of str
-    dimension : int
+    dimension, width : int
+        Of a position; number of rates of a rigid body.
+    alive : ndarray of bool, shape (b, width)
+        Which rates the bodies have.
     size : int
         Number n of rates.
     """
 
     def __init__(self, reader: Reader) -> None:
-        self.names, self.dimension = list(reader.bodies), reader.dimension
-        self.bodies = [reader.bodies[name] for name in self.names]
-        d, b = self.dimension, len(self.names)
-        self.width = d + (1 if d == 2 else 3)
-        alive = np.ones((b, self.width), dtype=bool)
-        for i, body in enumerate(self.bodies):
-            alive[i, d:] = body.inertia is not None
-        self.alive = alive
-        self.size = int(alive.sum())
-        ends = np.cumsum(alive.sum(axis=1))
-        self.turning = [(i, slice(ends[i] - self.width + d, ends[i])) for i in range(b) if alive[i, -1]]
+        self.names, self.bodies = list(reader.bodies), list(reader.bodies.values())
+        self.dimension = d = reader.dimension
+        turns = 1 if d == 2 else 3
+        self.width = d + turns
+        self.rigid = [body.inertia is not None for body in self.bodies]
+        self.alive = np.ones((len(self.bodies), self.width), dtype=bool)
+        self.alive[np.logical_not(self.rigid), d:] = False
+        self.size = int(self.alive.sum())
         self.masses = np.array([body.mass for body in self.bodies])
-        self.rigid = np.array([body.inertia is not None for body in self.bodies])
-        if d == 2:
-            self.inertias = np.array([0.0 if body.inertia is None else float(body.inertia) for body in self.bodies])
-        else:
-            self.inertias = np.array([np.zeros((3, 3)) if x.inertia is None else x.inertia for x in self.bodies])
+        none = np.zeros((turns, turns))
+        self.inertias = np.array(
+            [np.reshape(none if x.inertia is None else x.inertia, none.shape) for x in self.bodies]
+        )
 
     def start(self) -> State:
         """Return the places as they are described, and no rates."""
-        position = np.array([np.asarray(body.start.position, dtype=float) for body in self.bodies])
+        starts = [body.start for body in self.bodies]
         if self.dimension == 2:
-            turn = np.array([0.0 if body.start.turn is None else float(body.start.turn) for body in self.bodies])
+            turn = np.array([0.0 if x.turn is None else float(x.turn) for x in starts])
         else:
-            turn = np.array([np.eye(3) if x.start.rotation is None else x.start.rotation for x in self.bodies])
-        return State(position, turn, np.zeros(self.size))
+            turn = np.array([np.eye(3) if x.rotation is None else x.rotation for x in starts])
+        return State(np.array([np.asarray(x.position, dtype=float) for x in starts]), turn, np.zeros(self.size))
 
     def spread(self, rates: Floats) -> tuple[Floats, Floats]:
         """Return velocities (..., b, d) and spins (..., b) or (..., b, 3) of rates (..., n)."""
         full = np.zeros((*rates.shape[:-1], *self.alive.shape))
         full[..., self.alive] = rates
-        spins = full[..., self.dimension] if self.dimension == 2 else full[..., self.dimension :]
-        return full[..., : self.dimension], spins
+        spins = full[..., self.dimension :]
+        return full[..., : self.dimension], spins[..., 0] if self.dimension == 2 else spins
 
     def motion(self, rates: Floats) -> dict[str, Twist]:
         """Return rates by body."""
-        velocity, spin = self.spread(rates)
-        where = (lambda x, i: x[..., i]) if self.dimension == 2 else (lambda x, i: x[..., i, :])
+        velocity, spin = (np.moveaxis(x, rates.ndim - 1, 0) for x in self.spread(rates))
         return {
-            name: Twist(velocity[..., i, :], where(spin, i) if self.rigid[i] else None)
-            for i, name in enumerate(self.names)
+            name: Twist(velocity[i], spin[i] if rigid else None)
+            for i, (name, rigid) in enumerate(zip(self.names, self.rigid, strict=True))
         }
 
     def placement(self, state: State, rates: Floats | None = None, by: Floats | None = None) -> Placement:
@@ -96,22 +94,30 @@ class Coordinates:
         by : ndarray, shape (k,)
             Times by which the places move along the rates (s).
         """
-        position, turn = state.position, state.turn
-        if rates is None or by is None:
-            rotation = _rotations(turn) if self.dimension == 2 else turn
-            return self._named(position, rotation, turn)
-        velocity, spin = self.spread(rates)
-        step = by + 1j * STEP
-        position = position + step[:, None, None] * velocity
+        position, turn = state.position[None], state.turn[None]
+        if rates is not None and by is not None:
+            velocity, spin = self.spread(rates)
+            position = position + (by + 1j * STEP)[:, None, None] * velocity
+            if self.dimension == 2:
+                turn = turn + (by + 1j * STEP)[:, None] * spin
+            else:
+                turn = rotations_by(by[:, None, None] * spin) @ turn
+                turn = turn + 1j * STEP * (skew(spin) @ turn)
+        rotation = turn
         if self.dimension == 2:
-            turned = turn + step[:, None] * spin
-            return self._named(position, _rotations(turned), turned)
-        rotation = turn[None]
-        moved = by != 0.0
-        if moved.any():
-            rotation = np.repeat(rotation, len(by), axis=0)
-            rotation[moved] = rotations_by(by[moved, None, None] * spin[moved]) @ turn
-        return self._named(position, rotation + 1j * STEP * (skew(spin) @ rotation), None)
+            c, s = np.cos(turn), np.sin(turn)
+            rotation = np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+        if rates is None:
+            position, rotation, turn = position[0], rotation[0], turn[0]
+        flat = self.dimension == 2
+        return {
+            name: Pose(
+                position[..., i, :],
+                rotation[..., i, :, :] if self.rigid[i] else None,
+                turn[..., i] if flat and self.rigid[i] else None,
+            )
+            for i, name in enumerate(self.names)
+        }
 
     def advanced(self, state: State, change: Floats) -> State:
         """Return the state with its places moved by small changes, of shape (n,)."""
@@ -119,73 +125,48 @@ class Coordinates:
         turn = state.turn + angle if self.dimension == 2 else rotations_by(angle) @ state.turn
         return State(state.position + move, turn, state.rates)
 
-    def _named(self, position: Floats, rotation: Floats, turn: Floats | None) -> Placement:
-        flat = self.dimension == 2
-        return {
-            name: Pose(
-                position[..., i, :],
-                rotation[..., i, :, :] if self.rigid[i] else None,
-                turn[..., i] if flat and turn is not None and self.rigid[i] else None,
-            )
-            for i, name in enumerate(self.names)
-        }
+    def _tensors(self, state: State) -> Floats:
+        if self.dimension == 2:
+            return self.inertias
+        found: Floats = state.turn @ self.inertias @ np.swapaxes(state.turn, -1, -2)
+        return found
 
     def inertia(self, state: State) -> Floats:
         """Return the mass matrix, shape (n, n)."""
-        d = self.dimension
-        full = np.zeros(self.alive.shape)
-        full[:, :d] = self.masses[:, None]
-        if d == 2:
-            full[:, d] = self.inertias
-            return np.diag(full[self.alive])
-        found = np.diag(full[self.alive])
-        tensors = state.turn @ self.inertias @ np.swapaxes(state.turn, -1, -2)
-        for i, where in self.turning:
-            found[where, where] = tensors[i]
-        return found
+        b, d = len(self.bodies), self.dimension
+        full = np.zeros((b, self.width, b, self.width))
+        each = np.arange(b)
+        full[each, :d, each, :d] = self.masses[:, None, None] * np.eye(d)
+        full[each, d:, each, d:] = self._tensors(state)
+        alive = self.alive.ravel()
+        return full.reshape(b * self.width, -1)[np.ix_(alive, alive)]
 
-    def gyroscopic(self, state: State) -> Floats:
-        """Return the moments -w x J w of turning bodies in space, shape (n,)."""
-        full = np.zeros(self.alive.shape)
-        if self.dimension == 3:
-            _, spin = self.spread(state.rates)
-            momentum = np.einsum("bij,bjk,blk,bl->bi", state.turn, self.inertias, state.turn, spin)
-            full[:, 3:] = -(skew(spin) @ momentum[..., None])[..., 0]
-        return full[self.alive]
-
-    def weights(self, gravity: Floats) -> Floats:
-        """Return the forces of gravity, shape (n,)."""
+    def weights(self, state: State, gravity: Floats) -> Floats:
+        """Return the forces of gravity, and in space the moments -w x J w of turning bodies, shape (n,)."""
         full = np.zeros(self.alive.shape)
         full[:, : self.dimension] = self.masses[:, None] * gravity
+        if self.dimension == 3:
+            _, spin = self.spread(state.rates)
+            full[:, 3:] = -np.cross(spin, (self._tensors(state) @ spin[..., None])[..., 0])
         return full[self.alive]
 
     def pack(self, state: State) -> Floats:
-        """Return a state as one vector: attitudes in space as quaternions."""
-        turn = state.turn if self.dimension == 2 else np.array([quaternion(x) for x in state.turn])
-        return np.concatenate([state.position.ravel(), turn.ravel(), state.rates])
+        """Return a state as one vector."""
+        return np.concatenate([state.position.ravel(), state.turn.ravel(), state.rates])
 
     def unpack(self, vector: Floats) -> State:
-        """Return the state that a vector holds."""
-        b, d = self.alive.shape[0], self.dimension
-        position = vector[: b * d].reshape(b, d)
-        if d == 2:
-            return State(position, vector[2 * b : 3 * b], vector[3 * b :])
-        q = vector[3 * b : 7 * b].reshape(b, 4)
-        return State(position, _matrices(q / np.linalg.norm(q, axis=1)[:, None]), vector[7 * b :])
+        """Return the state that a vector holds, with the rotations that are nearest to its matrices."""
+        b, d = len(self.bodies), self.dimension
+        position, turn = vector[: b * d].reshape(b, d), vector[b * d : len(vector) - self.size]
+        if d == 3:
+            u, _, vt = np.linalg.svd(turn.reshape(b, 3, 3))
+            turn = u @ vt
+        return State(position, turn, vector[len(vector) - self.size :])
 
-    def flow(self, vector: Floats, accelerations: Floats) -> Floats:
+    def flow(self, state: State, accelerations: Floats) -> Floats:
         """Return the rate of a packed state."""
-        b = self.alive.shape[0]
-        start = len(vector) - self.size
-        velocity, spin = self.spread(vector[start:])
-        if self.dimension == 2:
-            return np.concatenate([velocity.ravel(), spin, accelerations])
-        q = vector[3 * b : 7 * b].reshape(b, 4)
-        w, v = q[:, :1], q[:, 1:]
-        rate = 0.5 * np.concatenate(
-            [-(spin * v).sum(axis=1)[:, None], w * spin + (skew(spin) @ v[..., None])[..., 0]], axis=1
-        )
-        return np.concatenate([velocity.ravel(), rate.ravel(), accelerations])
+        velocity, spin = self.spread(state.rates)
+        return self.pack(State(velocity, spin if self.dimension == 2 else skew(spin) @ state.turn, accelerations))
 
 
 def skew(v: Floats) -> Floats:
@@ -197,36 +178,6 @@ def skew(v: Floats) -> Floats:
 
 
 def rotations_by(vector: Floats) -> Floats:
-    """Return the rotations by vectors of angles (Rodrigues' formula)."""
-    size = np.linalg.norm(vector, axis=-1)[..., None, None]
-    k = skew(vector)
-    return np.eye(3) + np.sinc(size / np.pi) * k + 0.5 * np.sinc(size / (2 * np.pi)) ** 2 * (k @ k)
-
-
-def _rotations(turn: Floats) -> Floats:
-    found = np.empty((*turn.shape, 2, 2), dtype=turn.dtype)
-    found[..., 0, 0] = found[..., 1, 1] = np.cos(turn)
-    found[..., 1, 0] = np.sin(turn)
-    found[..., 0, 1] = -found[..., 1, 0]
+    """Return the rotations by vectors of angles."""
+    found: Floats = Rotation.from_rotvec(vector.reshape(-1, 3)).as_matrix().reshape(*vector.shape, 3)
     return found
-
-
-def _matrices(q: Floats) -> Floats:
-    w, v = q[:, 0], q[:, 1:]
-    outer = v[:, :, None] * v[:, None, :]
-    return (2 * w * w - 1)[:, None, None] * np.eye(3) + 2 * outer + 2 * w[:, None, None] * skew(v)
-
-
-def quaternion(rotation: Floats) -> Floats:
-    """Return the unit quaternion of a rotation, its largest component positive."""
-    r = rotation
-    full = np.array(
-        [
-            [1 + r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-            [r[2, 1] - r[1, 2], 1 + r[0, 0] - r[1, 1] - r[2, 2], r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
-            [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], 1 - r[0, 0] + r[1, 1] - r[2, 2], r[1, 2] + r[2, 1]],
-            [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], 1 - r[0, 0] - r[1, 1] + r[2, 2]],
-        ]
-    )
-    row = full[int(np.argmax(full.diagonal()))]
-    return row / np.linalg.norm(row)

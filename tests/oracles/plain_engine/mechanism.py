@@ -191,7 +191,7 @@ class Mechanism:
     def loads(self, state: State) -> Floats:
         """Return the forces that places and rates alone give, shape (n,)."""
         coordinates = self.coordinates
-        total = coordinates.weights(self.gravity) + coordinates.gyroscopic(state)
+        total = coordinates.weights(state, self.gravity)
         if self.acting or self.chains:
             placement, motion = coordinates.placement(state), coordinates.motion(state.rates)
             virtual = coordinates.motion(np.eye(coordinates.size))

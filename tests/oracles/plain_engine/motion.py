@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -115,8 +115,10 @@ class _Run:
     def __init__(self, mechanism: Mechanism, times: list[float], tolerance: float, faster: float) -> None:
         self.mechanism, self.times, self.tolerance = mechanism, times, tolerance
         self.motion = Motion(mechanism)
-        self.motion.weight = float(np.abs(mechanism.coordinates.weights(mechanism.gravity)).max(initial=0.0))
         self.state, self.touching = start(mechanism, faster)
+        still = mechanism.coordinates.start()
+        weights = mechanism.coordinates.weights(still, mechanism.gravity)
+        self.motion.weight = float(np.abs(weights).max(initial=0.0))
         self.now = 0.0
         self.modes: list[Mode] | None = None
         self.fastest = float(np.abs(self.state.rates).max(initial=0.0))
@@ -160,7 +162,7 @@ class _Run:
             settling = {i: left for i in hit if (left := self._settling(i, rates)) is not None}
             restitution.update(dict.fromkeys(settling, 0.0))
             outcome = impact(self.mechanism, self.state, self.touching, restitution)
-            self.state = State(self.state.position, self.state.turn, outcome.rates)
+            self.state = replace(self.state, rates=self.state.rates + outcome.change)
             for i, left in settling.items():
                 self.motion.events.append(Event("settle", every[i].name, self.now + left, 0.1 * left))
             largest = max((push for push, _ in outcome.impulses.values()), default=0.0)

@@ -99,12 +99,13 @@ class Stepper:
         """Return the rate of a packed state."""
         if not np.isfinite(vector).all():
             return np.full(len(vector), np.nan)
+        state = self.coordinates.unpack(vector)
         try:
-            accelerations = self.phase.solve(self.coordinates.unpack(vector)).accelerations
+            accelerations = self.phase.solve(state).accelerations
         except Inconsistent:
             # A step that leaves what is possible is rejected, and tried again with half its length.
             return np.full(len(vector), np.nan)
-        return self.coordinates.flow(vector, accelerations)
+        return self.coordinates.flow(state, accelerations)
 
     def project(self, state: State) -> State:
         """Return the state on what holds in this phase."""

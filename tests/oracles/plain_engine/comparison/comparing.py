@@ -14,12 +14,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from core.errors import MechanicsError
 from core.multibody.answer import SceneSolution
 from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
-from tests.oracles.plain_engine.coordinates import State, quaternion
+from tests.oracles.plain_engine.coordinates import State
 from tests.oracles.plain_engine.mechanism import NotSupported
 from tests.oracles.plain_engine.motion import Event, Motion, follow
 
@@ -256,7 +257,7 @@ def columns_of(motion: Motion, state: State) -> dict[str, Any]:
         if coordinates.dimension == 2:
             found[f"{name}.angle"], found[f"{name}.angular_velocity"] = state.turn[i : i + 1], spin[i : i + 1]
         else:
-            found[f"{name}.attitude"] = quaternion(state.turn[i])
+            found[f"{name}.attitude"] = Rotation.from_matrix(state.turn[i]).as_quat(canonical=True, scalar_first=True)
             found[f"{name}.angular_velocity"] = state.turn[i].T @ spin[i]
             found[f"{name}.angular_velocity_in_space"] = spin[i]
     return found
