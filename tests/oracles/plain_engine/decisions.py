@@ -215,11 +215,8 @@ def _figures(
     size = _hurry(mechanism, state, solution)
     rates = _speed(state)
     if opened and at_start:
-        rows = mechanism.rows(state, [every[i] for i in opened])
-        first = len(rows.rates) - len(opened) - mechanism.rolling_rows
-        for k, i in enumerate(opened):
-            row = first + k
-            found["gap", i] = float(rows.lines[row] @ solution.accelerations + rows.gains[row]) / size
+        gains = mechanism.gains_of_gaps(state, [every[i] for i in opened], solution.accelerations)
+        found.update({("gap", i): float(x) / size for i, x in zip(opened, gains, strict=True)})
     elif opened:
         gaps, _ = mechanism.gap_rates(state)
         found.update({("gap", i): float(gaps[i]) for i in opened})

@@ -180,6 +180,13 @@ class Mechanism:
         lines = (rates[:n] - driven).T
         return Rows(lines, values, rates[n + 1], (_WEIGHTS @ rates[n + 2 :]) / h, driven)
 
+    def gains_of_gaps(self, state: State, gaps: Sequence[OneSided], accelerations: Floats) -> Floats:
+        """Return the second derivatives of gaps, shape (k,)."""
+        rows = self.rows(state, gaps)
+        found: Floats = rows.lines @ accelerations + rows.gains
+        end = len(found) - self.rolling_rows
+        return found[end - len(gaps) : end]
+
     def _shortest(self, state: State) -> float:
         """Return the length (m) of the shortest rod or straight part, whose direction turns most for a move."""
         found = self.shortest_rod

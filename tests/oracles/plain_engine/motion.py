@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -14,16 +15,14 @@ from tests.oracles.plain_engine.coordinates import Floats, State
 from tests.oracles.plain_engine.decisions import decide
 from tests.oracles.plain_engine.impacts import impact
 from tests.oracles.plain_engine.mechanism import Mechanism, NotSupported, Undecided
-from tests.oracles.plain_engine.phase import Conditions, Inconsistent, Kind, Mode, Phase, Solution
+from tests.oracles.plain_engine.phase import OPEN, Conditions, Inconsistent, Kind, Mode, Phase
 from tests.oracles.plain_engine.readouts import forces_of
 from tests.oracles.plain_engine.start import TOUCHING, start
-from tests.oracles.plain_engine.steps import Crossing, Stepper, Stuck
+from tests.oracles.plain_engine.steps import Crossing, Stepper
 
 MOST_EVENTS = 300
 SHORT = 1e-4
 """Length (m) at which one vanishes soon, in a time that its rate tells."""
-SINGULAR = 1e-6
-"""Relative error of the time of a singular place, to which no step leads."""
 SETTLED = 1e-5
 """Share of the largest rate so far below which what bounces comes to rest: what the rest of the bounces move is of
 second order in it."""
@@ -126,26 +125,23 @@ class _Run:
 
     def go(self) -> Motion:
         """Follow the motion to its end."""
-        with np.errstate(all="ignore"):
-            return self._go(self.times[-1] if self.times else 0.0)
-
-    def _go(self, end: float) -> Motion:
+        end = max(self.times, default=0.0)
         try:
-            while True:
-                self._collide()
-                phase = decide(self.mechanism, self.state, self.touching, self._probe, self.fastest)
-                self._tell(phase)
-                self.state = Stepper(phase, self.tolerance).project(self.state)
-                self._sample(phase, self.now, self.state)
-                if self.now >= end or not self._advance(phase, end):
-                    return self.motion
-                if len(self.motion.events) > MOST_EVENTS:
-                    raise NotSupported("more events than are followed")
+            with np.errstate(all="ignore"):
+                while len(self.motion.events) <= MOST_EVENTS:
+                    self._collide()
+                    phase = decide(self.mechanism, self.state, self.touching, self._probe, self.fastest)
+                    self._tell(phase)
+                    self.state = Stepper(phase, self.tolerance).project(self.state)
+                    self._sample(phase, self.now, self.state)
+                    if self.now >= end or not self._advance(phase, end):
+                        return self.motion
         except Undecided as problem:
             self.motion.ended = Event(problem.code, ", ".join(problem.names), self.now)
             return self.motion
         except Inconsistent:
             raise NotSupported("no accelerations go with what is held") from None
+        raise NotSupported("more events than are followed")
 
     def _probe(self, phase: Phase, state: State, time: float) -> State:
         return Stepper(phase, 1e-11).to(state, 0.0, time)
@@ -174,17 +170,12 @@ class _Run:
 
     def _settling(self, i: int, rates: Floats) -> float | None:
         """Return the time in which the bounces of one contact come to rest; None where that is not at hand."""
-        every = self.mechanism.one_sided
-        e = every[i].restitution
-        if self.bounces.get(i, 0) < LISTED or not 0.0 < e < 1.0:
+        one = self.mechanism.one_sided[i]
+        e = one.restitution
+        if self.bounces.get(i, 0) < LISTED or not 0.0 < e < 1.0 or -rates[i] > SETTLED * self.fastest:
             return None
-        if -rates[i] > SETTLED * self.fastest:
-            return None
-        free = Phase(self.mechanism, [Mode(Kind.OPEN) if k == i else mode for k, mode in enumerate(self.modes or [])])
-        rows = self.mechanism.rows(self.state, [every[i]])
-        found = free.solve(self.state).accelerations
-        row = len(rows.rates) - 1 - self.mechanism.rolling_rows
-        falls = -float(rows.lines[row] @ found + rows.gains[row])
+        free = Phase(self.mechanism, [OPEN if k == i else mode for k, mode in enumerate(self.modes or [])])
+        falls = -self.mechanism.gains_of_gaps(self.state, [one], free.solve(self.state).accelerations)[0]
         return None if falls <= 0.0 else 2.0 * e * -float(rates[i]) / (falls * (1.0 - e))
 
     def _tell(self, phase: Phase) -> None:
@@ -211,53 +202,27 @@ class _Run:
             self.motion.forces[time] = forces_of(phase, state)
 
     def _figures(self, phase: Phase, state: State) -> dict[tuple[str, int], float]:
-        found: dict[tuple[str, int], float] = {}
+        """Return what has to stay at or above zero in a phase."""
         gaps, _ = self.mechanism.gap_rates(state)
-        for i, mode in enumerate(phase.modes):
-            if mode.kind is Kind.OPEN:
-                found["gap", i] = float(gaps[i])
+        opened = {i for i, mode in enumerate(phase.modes) if mode.kind is Kind.OPEN}
+        found = {("gap", i): float(gaps[i]) for i in opened}
         if phase.closed:
             solution = phase.solve(state)
-            found.update(self._pressed(phase, solution))
-        slack = {
-            one.name for one, mode in zip(self.mechanism.one_sided, phase.modes, strict=True) if mode.kind is Kind.OPEN
-        }
-        for k, (name, span, _) in enumerate(self.mechanism.spans(state)):
-            if name not in slack:
-                found["span", k] = span - SHORT
-        return found
-
-    def _pressed(self, phase: Phase, solution: Solution) -> dict[tuple[str, int], float]:
-        conditions = Conditions(phase, solution)
-        found = dict(conditions.determined)
-        if conditions.share is not None:
-            found["share", -1] = conditions.share
-        for i, slip in solution.slips.items():
-            found["slip", i] = float(phase.along[i] @ slip) / max(self.fastest, 1e-9)
-        return found
+            conditions = Conditions(phase, solution)
+            found.update(conditions.determined)
+            if conditions.share is not None:
+                found["share", -1] = conditions.share
+            for i, slip in solution.slips.items():
+                found["slip", i] = float(phase.along[i] @ slip) / max(self.fastest, 1e-9)
+        slack = {self.mechanism.one_sided[i].name for i in opened}
+        spans = enumerate(self.mechanism.spans(state))
+        return found | {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
 
     def _advance(self, phase: Phase, end: float) -> bool:
         """Go to the next event; return whether there is one."""
         stepper = Stepper(phase, self.tolerance)
-        try:
-            return self._follow(stepper, phase, end)
-        except Stuck as stuck:
-            short = self._shortest(stuck.state)
-            if short is None:
-                raise
-            self.motion.ended = Event("singular", short[0], stuck.time + short[1], SINGULAR * stuck.time)
-            return False
-
-    def _shortest(self, state: State) -> tuple[str, float] | None:
-        """Return the name of a length that vanishes next, and in which time by its rate; None if none is at hand."""
-        spans = self.mechanism.spans(state)
-        near = [(name, -span / rate) for name, span, rate in spans if span < 1e-2 and rate < 0.0]
-        return min(near, key=lambda x: x[1], default=None)
-
-    def _follow(self, stepper: Stepper, phase: Phase, end: float) -> bool:
-        for found in stepper.until(
-            self.state, self.now, end, lambda state: self._figures(phase, state), self.times, self._first(phase)
-        ):
+        figures = partial(self._figures, phase)
+        for found in stepper.until(self.state, self.now, end, figures, self.times, self._first(phase)):
             if not isinstance(found, Crossing):
                 self.now, self.state = found
                 self._sample(phase, self.now, self.state)
@@ -270,7 +235,7 @@ class _Run:
                 self.motion.ended = self._vanished(phase, i)
                 return False
             gaps, _ = self.mechanism.gap_rates(self.state)
-            met = [k for k, gap in enumerate(gaps) if abs(gap) < TOUCHING or gap < 0.0]
+            met = [k for k, gap in enumerate(gaps) if gap < TOUCHING]
             self.touching = sorted({*phase.closed, *met, *([i] if kind == "gap" else [])})
             return True
         return False

@@ -149,6 +149,12 @@ class Phase:
         # Beside rounding a slip has no direction; one that has passed through zero goes on being continued.
         return along if size < 1e-13 else slip / size * (1.0 if slip @ along >= 0.0 else -1.0)
 
+    def turn(self, state: State) -> None:
+        """Let what slides in space go on from its present direction."""
+        if any(len(along) == 3 for along in self.along.values()):
+            rows, _, slips, _ = self.rows(state)
+            self.along = {i: self.direction(i, rows.rates[slips[i]]) for i in self.sliding}
+
     def solve(self, state: State) -> Solution:
         """Return accelerations and forces.
 

@@ -8,14 +8,16 @@ C. Lubich, G. Wanner, Geometric Numerical Integration (2nd ed., 2006), section I
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import brentq, minimize_scalar
 
-from tests.oracles.plain_engine.coordinates import Floats, State
+from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 from tests.oracles.plain_engine.mechanism import NotSupported
 from tests.oracles.plain_engine.phase import Inconsistent, Phase
 from tests.oracles.plain_engine.start import projected
@@ -31,7 +33,8 @@ NO_FORCE = 1e-10
 GRAZES = 1e-9
 """Share of a gap's own size to which it is known whether it reaches zero where it turns back."""
 
-Figures = Callable[[State], dict[tuple[str, int], float]]
+Key = tuple[str, int]
+Figures = Callable[[State], dict[Key, float]]
 """What has to stay at or above zero, by kind and number."""
 
 
@@ -45,40 +48,10 @@ class Crossing:
         Whether it turns back at zero, to what is known of it.
     """
 
-    key: tuple[str, int]
+    key: Key
     time: float
     state: State
     grazes: bool = False
-
-
-@dataclass(frozen=True)
-class Seen:
-    """Figures at times of one step, after the last two of the step before, and how states between are found."""
-
-    times: list[float]
-    curves: list[dict[tuple[str, int], float]]
-    dense: list[tuple[float, Callable[[float], Floats]]]
-
-    def at(self, time: float) -> Floats:
-        """Return the packed state at a time."""
-        for begun, dense in reversed(self.dense):
-            if time >= begun:
-                return dense(time)
-        return self.dense[0][1](time)
-
-
-class Stuck(NotSupported):
-    """The steps become too small: the motion comes to a singular place.
-
-    Parameters
-    ----------
-    time, state
-        Where that is, nearly.
-    """
-
-    def __init__(self, time: float, state: State, message: str) -> None:
-        super().__init__(f"the steps become too small: {message}")
-        self.time, self.state = time, state
 
 
 class Stepper:
@@ -96,16 +69,14 @@ class Stepper:
         self.coordinates = self.mechanism.coordinates
 
     def rate(self, _: float, vector: Floats) -> Floats:
-        """Return the rate of a packed state."""
-        if not np.isfinite(vector).all():
-            return np.full(len(vector), np.nan)
-        state = self.coordinates.unpack(vector)
+        """Return the rate of a packed state: none where a step leaves what is possible, which makes it shorter."""
         try:
-            accelerations = self.phase.solve(state).accelerations
+            if np.isfinite(vector).all():
+                state = self.coordinates.unpack(vector)
+                return self.coordinates.flow(state, self.phase.solve(state).accelerations)
         except Inconsistent:
-            # A step that leaves what is possible is rejected, and tried again with half its length.
-            return np.full(len(vector), np.nan)
-        return self.coordinates.flow(state, accelerations)
+            pass
+        return np.full(len(vector), np.nan)
 
     def project(self, state: State) -> State:
         """Return the state on what holds in this phase."""
@@ -113,107 +84,76 @@ class Stepper:
 
     def to(self, state: State, start: float, end: float) -> State:
         """Return the state at a later time, without any watch."""
-        if end <= start:
-            return state
-        solver = self._solver(state, start, end, end - start)
-        while solver.status == "running":
-            self._step(solver)
-        return self.coordinates.unpack(solver.y)
+        last = deque(self._steps(state, start, end, end - start), maxlen=1) if end > start else ()
+        return last[0][1] if last else state
 
-    def _solver(self, state: State, start: float, end: float, first: float | None) -> DOP853:
-        vector = self.coordinates.pack(state)
+    def _steps(self, state: State, start: float, end: float, first: float | None) -> Iterator[tuple[DOP853, State]]:
+        """Yield the method after each of its steps, and the projected state from which the next begins."""
         size = max(1e-3, float(np.abs(state.position).max(initial=0.0)))
         first = None if first is None else min(first, end - start)
-        return DOP853(self.rate, start, vector, end, rtol=self.tolerance, atol=self.tolerance * size, first_step=first)
-
-    def _step(self, solver: DOP853) -> None:
-        message = solver.step()
-        if solver.status == "failed":
-            raise NotSupported(f"the steps become too small: {message}")
-        state = self.project(self.coordinates.unpack(solver.y))
-        self._follow(state)
-        solver.y = self.coordinates.pack(state)
-        solver.f = self.rate(solver.t, solver.y)
-
-    def _follow(self, state: State) -> None:
-        """Let what slides in space go on from its present direction."""
-        if any(len(along) == 3 for along in self.phase.along.values()):
-            rows, _, slips, _ = self.phase.rows(state)
-            for i in self.phase.sliding:
-                self.phase.along[i] = self.phase.direction(i, rows.rates[slips[i]])
+        absolute = self.tolerance * size
+        vector = self.coordinates.pack(state)
+        solver = DOP853(self.rate, start, vector, end, rtol=self.tolerance, atol=absolute, first_step=first)
+        while solver.status == "running":
+            message = solver.step()
+            if solver.status == "failed":
+                raise NotSupported(f"the steps become too small: {message}")
+            after = self.project(self.coordinates.unpack(solver.y))
+            yield solver, after
+            self.phase.turn(after)
+            solver.y = self.coordinates.pack(after)
+            solver.f = self.rate(solver.t, solver.y)
 
     def until(
         self, state: State, start: float, end: float, figures: Figures, samples: list[float], first: float | None
     ) -> Iterator[tuple[float, State] | Crossing]:
         """Yield the states at the samples, and last the first crossing; or the state at the end."""
-        now, tail = start, Seen([start], [figures(state)], [])
+        times, curves, now = [start], [figures(state)], start
+        dense: list[Callable[[float], Floats]] = []
         for stop in [*[t for t in samples if start < t < end], end]:
-            if stop <= now:
-                continue
-            solver = self._solver(state, now, stop, first)
-            while solver.status == "running":
-                origin, begun = self.coordinates.unpack(solver.y), solver.t
-                message = solver.step()
-                if solver.status == "failed":
-                    raise Stuck(begun, origin, str(message))
-                if tail.curves[0]:
-                    seen = self._seen(solver, begun, tail, figures)
-                    crossing = self._crossing(seen, origin, begun, figures, solver.t - begun)
-                    if crossing is not None:
-                        yield crossing
-                        return
-                    tail = Seen(seen.times[-2:], seen.curves[-2:], seen.dense[-1:])
-                after = self.project(self.coordinates.unpack(solver.y))
-                self._follow(after)
-                solver.y = self.coordinates.pack(after)
-                solver.f = self.rate(solver.t, solver.y)
-                first = solver.h_abs
-            state, now = self.coordinates.unpack(solver.y), stop
+            for solver, after in self._steps(state, now, stop, first):
+                parts = INSIDE if dense else FIRST
+                dense = [*dense[-1:], solver.dense_output()]
+                times = [*times[-2:], *(solver.t_old + part * solver.step_size for part in parts)]
+                seen = partial(_between, dense, solver.t_old, self.coordinates)
+                curves = [*curves[-2:], *(figures(seen(t)) for t in times[-len(parts) :])]
+                crossing = self._crossing(seen, times, curves, figures, solver)
+                if crossing is not None:
+                    yield crossing
+                    return
+                first, state = solver.h_abs, after
+            now = stop
             yield now, state
 
-    def _seen(self, solver: DOP853, begun: float, tail: Seen, figures: Figures) -> Seen:
-        dense = solver.dense_output()
-        parts = INSIDE if tail.dense else FIRST
-        times = [begun + part * (solver.t - begun) for part in parts]
-        curves = [figures(self.coordinates.unpack(dense(t))) for t in times]
-        return Seen([*tail.times, *times], [*tail.curves, *curves], [*tail.dense, (begun, dense)])
-
-    def _crossing(self, seen: Seen, origin: State, begun: float, figures: Figures, length: float) -> Crossing | None:
-        first: tuple[float, tuple[str, int], bool, Callable[[float], float]] | None = None
-        for key in seen.curves[0]:
-
-            def here(t: float, key: tuple[str, int] = key) -> float:
-                return figures(self.coordinates.unpack(seen.at(t)))[key]
-
-            found = _first_loss(here, seen.times, [curve[key] for curve in seen.curves], key[0])
-            if found is not None and (first is None or found[0] < first[0]):
-                first = (found[0], key, found[1], here)
-        if first is None:
+    def _crossing(
+        self,
+        seen: Callable[[float], State],
+        times: list[float],
+        curves: list[dict[Key, float]],
+        figures: Figures,
+        solver: DOP853,
+    ) -> Crossing | None:
+        losses = []
+        for key in curves[0]:
+            loss = _first_loss(lambda t, key=key: figures(seen(t))[key], times, [x[key] for x in curves], key[0])  # type: ignore[misc]
+            losses += [] if loss is None else [(*loss, key)]
+        if not losses:
             return None
-        time, key, grazes, figure = first
-        if not grazes and time > begun:
-            time = self._refined(origin, begun, time, figure, figures, key, length)
-        time = max(time, begun)
-        return Crossing(key, time, self.project(self.to(origin, begun, time)), grazes)
+        time, grazes, key = min(losses)
+        begun, origin = solver.t_old, self.coordinates.unpack(solver.y_old)
+        earlier = max(time - 1e-4 * solver.step_size, begun + 0.5 * (time - begun))
+        if not grazes and time > earlier:
+            # The zero of states that are reached in steps, and not by interpolation.
+            slope = (figures(seen(time))[key] - figures(seen(earlier))[key]) / (time - earlier)
+            for _ in range(2 if slope < 0.0 else 0):
+                change = figures(self.to(origin, begun, time))[key] / slope
+                time -= change if abs(change) <= 0.05 * solver.step_size else 0.0
+        return Crossing(key, max(time, begun), self.to(origin, begun, max(time, begun)), grazes)
 
-    def _refined(
-        self, origin: State, begun: float, time: float, figure: Callable[[float], float], figures: Figures,
-        key: tuple[str, int], length: float,
-    ) -> float:  # fmt: skip
-        """Return the time of a zero, by states that are reached in steps and not by interpolation."""
-        delta = 1e-4 * length
-        earlier = max(time - delta, begun + 0.5 * (time - begun))
-        slope = (figure(time) - figure(earlier)) / (time - earlier) if time > earlier else 0.0
-        if slope >= 0.0:
-            return time
-        for _ in range(2):
-            change = figures(self.to(origin, begun, time))[key] / slope
-            if abs(change) > 0.05 * length:
-                return time
-            time -= change
-            if abs(change) < 1e-11 * length:
-                break
-        return time
+
+def _between(dense: list[Callable[[float], Floats]], begun: float, coordinates: Coordinates, time: float) -> State:
+    """Return the state within the present step, or the one before."""
+    return coordinates.unpack(dense[-1 if time >= begun else 0](time))
 
 
 def _first_loss(
