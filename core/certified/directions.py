@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from core.balls import Undetermined
-from core.certified.adaptive_precision import working_bits
-from core.certified.decimals import FLOOR_IN_DIGITS
-from core.certified.exact_start import Balls
+from core.digits.adaptive_precision import working_bits
+from core.digits.decimals import FLOOR_IN_DIGITS
+from core.rotation.exact_start import Balls
 
 TIE_BITS = 320
 """Components that this precision does not distinguish count as equal."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from flint import arb, fmpq
 
-from core.certified.adaptive_precision import bits_for, check_digits, each_determined, until_determined
-from core.certified.decimals import decimal, decimals
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
-from core.certified.exact_start import Balls, cross_of_balls, dot
 from core.certified.free_rotation import Rows
+from core.digits.adaptive_precision import bits_for, check_digits, each_determined, until_determined
+from core.digits.decimals import decimal, decimals
+from core.rotation.exact_start import Balls, cross_of_balls, dot
 from core.rotation.surfaces.energy_surface import CORNERS, Faces, check_resolution, geodesic, topology
 
 

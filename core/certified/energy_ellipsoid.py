@@ -9,18 +9,18 @@ from fractions import Fraction
 from flint import arb, fmpq
 
 from core.bodies.exact import tensor_pairs
+from core.bodies.exact_inertia import ExactInertia
 from core.bodies.mass_properties import MassProperties
-from core.certified.adaptive_precision import bits_for, check_digits, each_determined, until_determined
-from core.certified.decimals import DEEPEST, decimal, decimal_of_fraction, decimals, floor_below
 from core.certified.directions import floor_of_directions
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers, nearest
-from core.certified.exact_start import Balls, dot, principal_axes
 from core.certified.free_rotation import CertifiedRotation, Rows
-from core.certified.turning_motion import TurningMotion
+from core.digits.adaptive_precision import bits_for, check_digits, each_determined, until_determined
+from core.digits.decimals import DEEPEST, decimal, decimal_of_fraction, decimals, floor_below
+from core.digits.exact_inputs import Number, enclosed, exact, exact_numbers, nearest
 from core.errors import InvalidParameter
+from core.rotation.exact_start import Balls, dot, principal_axes
 from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.surfaces.polhodes import check_count
+from core.rotation.turning_motion import TurningMotion
 
 
 @dataclass(frozen=True)

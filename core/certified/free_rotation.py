@@ -9,16 +9,16 @@ from functools import cached_property
 
 from flint import arb
 
-from core.certified.adaptive_precision import bits_for, check_digits, each_determined, until_determined
-from core.certified.decimals import DEEPEST, FLOOR_IN_DIGITS, decimal, decimal_of_fraction, decimals, floor_below
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import Number, enclosed, exact_numbers
-from core.certified.exact_start import ExactStart, Regime
-from core.certified.turning_motion import QuaternionBalls, TurningMotion, product
+from core.bodies.exact_inertia import ExactInertia
+from core.digits.adaptive_precision import bits_for, check_digits, each_determined, until_determined
+from core.digits.decimals import DEEPEST, FLOOR_IN_DIGITS, decimal, decimal_of_fraction, decimals, floor_below
+from core.digits.exact_inputs import Number, enclosed, exact_numbers
 from core.errors import InvalidParameter
 from core.notices import Notice
+from core.rotation.exact_start import ExactStart, Regime
 from core.rotation.regimes import NAME, steady_model, triaxial_model
 from core.rotation.stability.classification import UNSTABLE_SPINS, unstable_axis
+from core.rotation.turning_motion import QuaternionBalls, TurningMotion, product
 from core.systems.system import Model
 
 Rows = list[list[str]]

@@ -9,17 +9,17 @@ from math import isqrt
 
 from flint import arb
 
+from core.bodies.exact_inertia import Vector
 from core.bodies.principal_inertia import Symmetry
-from core.certified.adaptive_precision import bits_for, check_digits, until_determined
-from core.certified.decimals import decimal, decimal_of_fraction, decimals
 from core.certified.directions import floor_of_directions, oriented
-from core.certified.exact_inertia import Vector
-from core.certified.exact_inputs import enclosed
-from core.certified.exact_start import Balls, Regime
 from core.certified.free_rotation import CertifiedRotation
-from core.certified.turning_motion import TurningMotion
+from core.digits.adaptive_precision import bits_for, check_digits, until_determined
+from core.digits.decimals import decimal, decimal_of_fraction, decimals
+from core.digits.exact_inputs import enclosed
+from core.rotation.exact_start import Balls, Regime
 from core.rotation.precession import missing_reasons
 from core.rotation.precession.precession import OF_SYMMETRIC_BODIES, order_of_directions
+from core.rotation.turning_motion import TurningMotion
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from typing import Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origi
 from flint import arb
 
 from core.balls import Undetermined
-from core.certified.adaptive_precision import bits_for, check_digits, until_determined, working_bits
-from core.certified.decimals import decimal, place_of
-from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
+from core.digits.adaptive_precision import bits_for, check_digits, until_determined, working_bits
+from core.digits.decimals import decimal, place_of
+from core.digits.exact_inputs import Number, enclosed, exact, exact_numbers
 from core.errors import InvalidParameter, Path, inside_field
 from core.notices import Notice
 from core.scenes.enclosure import BITS

@@ -13,18 +13,18 @@ from fractions import Fraction
 from flint import arb
 
 from core.balls import Undetermined
+from core.bodies.exact_inertia import ExactInertia
 from core.bodies.principal_inertia import Symmetry
-from core.certified.adaptive_precision import bits_for, check_digits, until_determined
-from core.certified.decimals import decimal, decimal_of_fraction, decimals
 from core.certified.directions import floor_of_directions, oriented
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
-from core.certified.exact_start import Balls, PrincipalState, principal_axes
 from core.certified.free_rotation import CertifiedRotation
-from core.certified.turning_motion import constants_of
+from core.digits.adaptive_precision import bits_for, check_digits, until_determined
+from core.digits.decimals import decimal, decimal_of_fraction, decimals
+from core.digits.exact_inputs import Number, enclosed, exact, exact_numbers
+from core.rotation.exact_start import Balls, PrincipalState, principal_axes
 from core.rotation.regimes import triaxial_model
 from core.rotation.stability.classification import REST, Attitude, Kind, Verdict, classify_equilibrium, drift
 from core.rotation.stability.stability import flip_reason, no_middle_axis
+from core.rotation.turning_motion import constants_of
 
 
 @dataclass(frozen=True)

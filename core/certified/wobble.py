@@ -9,7 +9,7 @@ from typing import Any
 from flint import arb
 
 from core.balls import precision
-from core.certified.exact_inputs import enclosed
+from core.digits.exact_inputs import enclosed
 from core.rotation.wobble import Wobble, length_of
 
 BITS = 256

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties
+from core.bodies.pinned import pinned_notices
 from core.bodies.sensitivities import tensor_sensitivities
 from core.compiled import kernel
 from core.errors import AccuracyUnreachable
@@ -30,9 +31,6 @@ PARTS = 3
 
 _PIECE = 512
 """Samples whose energies are formed at a time."""
-
-AT_THE_ORIGIN = 2.0**-48
-"""Distance of the centre of mass from the origin, over the radius of gyration, that rounding explains."""
 
 
 @kernel(VECTOR_FIELD)
@@ -137,30 +135,6 @@ def _ranges(
         0.5 * energy[0], 0.5 * e_least.min() + spoilt, 0.5 * e_largest.max() + spoilt,
         math.sqrt(square[0]), math.sqrt(m_least.min()) + spoilt, math.sqrt(m_largest.max()) + spoilt,
     )  # fmt: skip
-
-
-def pinned_notices(body: MassProperties) -> tuple[Notice, ...]:
-    """Return what is to be said of a body that is held at a point other than its centre of mass; paths lead from it."""
-    if body.about != "origin" or body.mass is None or body.center_of_mass is None:
-        return ()
-    distance = math.hypot(*(float(x) for x in body.center_of_mass))
-    gyration = math.sqrt(float(body.principal_of_motion.moments[2])) / math.sqrt(body.mass)
-    return () if distance <= AT_THE_ORIGIN * gyration else (not_free(distance),)
-
-
-def not_free(distance: float) -> Notice:
-    """Return the warning about a body that is held at so many metres from its centre of mass; its path leads from it.
-
-    Euler's equations hold about the pin, and the pin's force has no torque about it; any uniform field has one, as its
-    resultant acts at the centre of mass (H. Goldstein, C. Poole, J. Safko, "Classical Mechanics", 3rd ed., sections 1.2
-    and 5.7).
-    """
-    detail = (
-        f"the body is held at the origin, {distance:.6g} m from its centre of mass: it turns as answered only without "
-        "gravity and in a smooth pivot that does not accelerate. A body that floats or is thrown turns about its "
-        'centre of mass: leave out about, or give "center-of-mass"'
-    )
-    return Notice("not-free", detail, ("about",))
 
 
 def inherited_notices(body: MassProperties) -> tuple[Notice, ...]:

@@ -16,11 +16,11 @@ from typing import Annotated, Any, ForwardRef, Literal, Union, get_args, get_ori
 from pydantic import BaseModel, Field, create_model
 
 from core.bodies.composite import Composite, Count, Part
+from core.bodies.exact_bodies import UNIFORM, exact_body
+from core.bodies.exact_mass import ExactMass
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
-from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS
-from core.certified.exact_bodies import UNIFORM, exact_body
-from core.certified.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, exact, exact_numbers
-from core.certified.exact_mass import ExactMass
+from core.digits.decimals import FEWEST_DIGITS, MOST_DIGITS
+from core.digits.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, exact, exact_numbers
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable, Path
 from core.quantities import Quantity, TaggedBy
 from core.rows import Rows

@@ -13,7 +13,7 @@ import pytest
 from core.bodies.composite import WORK_OF_A_PART, Composite, Part
 from core.bodies.measured import PointMasses, PrincipalMoments
 from core.bodies.solids import Ball
-from core.certified.adaptive_precision import each_determined, until_determined
+from core.digits.adaptive_precision import each_determined, until_determined
 from core.errors import BudgetExceeded
 from core.rotation.ensemble import WORK_OF_A_MEMBER, ensemble
 from core.rotation.precession.measurement import Measure, measure_period

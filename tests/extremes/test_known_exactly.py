@@ -19,10 +19,10 @@ from hypothesis import strategies as st
 
 from core.bodies.composite import Composite, Part
 from core.bodies.exact import rotated, rotation
+from core.bodies.exact_bodies import exact_body
+from core.bodies.exact_inertia import ExactInertia
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.bodies.solids import Cone, Cuboid, Cylinder, Ellipsoid
-from core.certified.exact_bodies import exact_body
-from core.certified.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.errors import AccuracyUnreachable

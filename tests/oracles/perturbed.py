@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from core.arrays import Floats
-from core.certified.exact_inertia import ExactInertia
+from core.bodies.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from tests.oracles.uncertain_bodies import Uncertain
 

@@ -15,9 +15,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.balls import Undetermined, precision
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_start import ExactStart
-from core.certified.turning_motion import TurningMotion
+from core.bodies.exact_inertia import ExactInertia
 from core.errors import AccuracyUnreachable, MechanicsError
 from core.multibody.algebra.directions import cross
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, is_zero
@@ -25,6 +23,8 @@ from core.multibody.equations.packed import pair, two_to
 from core.multibody.motion.motion import States, check_sample_count
 from core.multibody.motion.turning_body import TurningBody
 from core.multibody.table.table import Table
+from core.rotation.exact_start import ExactStart
+from core.rotation.turning_motion import TurningMotion
 
 _SMALL = 2.0**-98
 _ENOUGH = 110

@@ -11,8 +11,8 @@ from typing import Any
 from flint import arb, ctx
 
 from core.balls import Undetermined, precision
-from core.certified.adaptive_precision import working_bits
-from core.certified.decimals import decimal, floor_below, place_of
+from core.digits.adaptive_precision import working_bits
+from core.digits.decimals import decimal, floor_below, place_of
 from core.errors import NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start

@@ -15,8 +15,8 @@ from typing import Any
 from flint import ctx
 
 from core.balls import precision
-from core.certified.adaptive_precision import bits_for, check_digits, until_determined
-from core.certified.exact_inputs import enclosed
+from core.digits.adaptive_precision import bits_for, check_digits, until_determined
+from core.digits.exact_inputs import enclosed
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO
 from core.multibody.answer import Energy

@@ -10,8 +10,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from core.certified.decimals import decimal_of_fraction
-from core.certified.exact_mass import ExactMass
+from core.bodies.exact_mass import ExactMass
+from core.digits.decimals import decimal_of_fraction
 from core.notices import Notice
 from core.systems.budget import Budget
 from service.requests.decimal_models import inexact_doubles

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from core.certified.adaptive_precision import check_digits
-from core.certified.exact_bodies import MOST_PARTS
+from core.bodies.exact_bodies import MOST_PARTS
+from core.digits.adaptive_precision import check_digits
 from core.systems.budget import Budget
 from service.schemas import sample_count
 

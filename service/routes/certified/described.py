@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from core.certified.adaptive_precision import check_digits
-from core.certified.exact_inputs import nearest
+from core.digits.adaptive_precision import check_digits
+from core.digits.exact_inputs import nearest
 from core.multibody.proven.proven_answer import PROVEN_OUTPUTS, check_instants, proven_answer
 from core.systems.budget import Budget
 from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants

@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from core.certified.adaptive_precision import check_digits
 from core.certified.ellipsoid_mesh import certified_grid, certified_triangles
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
+from core.digits.adaptive_precision import check_digits
 from core.systems.budget import Budget
 from service.requests.decimal_models import DecimalAngularVelocity, DecimalBody, DecimalEnergy, DigitCount, body_of
 from service.responses.ellipsoid_svg import ellipsoid_figure

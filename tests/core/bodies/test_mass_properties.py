@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.composite import Composite, Part
+from core.bodies.exact_mass import ExactMass
 from core.bodies.mass_properties import Condition, MassProperties, diagonal
 from core.bodies.measured import SUMMED_EXACTLY, InertiaTensor, PointMasses, PrincipalMoments
 from core.bodies.mesh import Mesh
 from core.bodies.solids import Cuboid
-from core.certified.exact_mass import ExactMass
 from core.errors import InvalidParameter, NotApplicable
 from core.notices import Notice
 

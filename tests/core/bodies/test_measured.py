@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from core.bodies.exact import SMALLEST
+from core.bodies.exact_inertia import ExactInertia
 from core.bodies.mass_properties import diagonal
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
-from core.certified.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import InvalidParameter, MechanicsError, UnphysicalInertia
 from core.rotation.precession.precession import precession

@@ -10,7 +10,7 @@ from fractions import Fraction
 import pytest
 from mpmath import ellipfun, mp, mpf
 
-from core.certified.exact_inertia import ExactInertia
+from core.bodies.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.certified.stability import certified_stability

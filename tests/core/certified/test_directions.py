@@ -8,8 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.balls import Undetermined, precision
-from core.certified.decimals import FLOOR_IN_DIGITS
 from core.certified.directions import TIE_BITS, floor_of_directions, oriented
+from core.digits.decimals import FLOOR_IN_DIGITS
 
 component = st.integers(-5, 5)
 

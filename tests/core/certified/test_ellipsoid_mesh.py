@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
+from core.bodies.exact_inertia import ExactInertia
 from core.bodies.measured import InertiaTensor, PrincipalMoments
 from core.certified.ellipsoid_mesh import certified_grid, certified_triangles
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
-from core.certified.exact_inertia import ExactInertia
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from tests.core.certified.test_energy_ellipsoid import OBLIQUE, quadrics

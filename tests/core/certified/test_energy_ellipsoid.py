@@ -3,8 +3,8 @@ from fractions import Fraction
 import pytest
 from mpmath import mp, mpf
 
+from core.bodies.exact_inertia import ExactInertia
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
-from core.certified.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import BudgetExceeded, InvalidParameter
 

@@ -7,8 +7,8 @@ import pytest
 from mpmath import mp, mpf
 
 from core.bodies.exact import rotated, rotation
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_mass import ExactMass
+from core.bodies.exact_inertia import ExactInertia
+from core.bodies.exact_mass import ExactMass
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import BudgetExceeded, InvalidParameter
 from tests.oracles.cases import Case, cases

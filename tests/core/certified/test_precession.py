@@ -4,7 +4,7 @@ import pytest
 from mpmath import mp, mpf
 
 from core.bodies.exact import rotated, rotation
-from core.certified.exact_inertia import ExactInertia
+from core.bodies.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from tests.oracles.cases import Case, cases

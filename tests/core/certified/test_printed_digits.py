@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
+from core.bodies.exact_inertia import ExactInertia
 from core.certified.ellipsoid_mesh import certified_grid, certified_triangles
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
-from core.certified.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.certified.scenes import certified_scene, exact_scene

@@ -4,7 +4,7 @@ import pytest
 from mpmath import mp, mpf
 
 from core.bodies.exact import rotated, rotation
-from core.certified.exact_inertia import ExactInertia
+from core.bodies.exact_inertia import ExactInertia
 from core.certified.stability import certified_stability
 from core.errors import InvalidParameter, NotApplicable
 

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from pydantic import TypeAdapter, ValidationError
 
 from core.bodies import Body
-from core.certified.exact_bodies import MOST_PARTS
-from core.certified.exact_inputs import LARGEST_EXPONENT, LONGEST_NUMERAL
+from core.bodies.exact_bodies import MOST_PARTS
+from core.digits.exact_inputs import LARGEST_EXPONENT, LONGEST_NUMERAL
 from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, NotApplicable
 from core.quantities import members_of
 from core.scenes.friction import Friction

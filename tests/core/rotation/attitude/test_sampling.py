@@ -117,7 +117,7 @@ def test_the_angle_about_the_momentum_is_the_integral_of_its_rate(moments, rates
 
 
 def test_the_angle_on_the_separatrix() -> None:
-    """psi/2 = L u/(2 B p) - g arctan(h tanh(u/2)), h = M_x/(L + M_z) at u = 0 (`core.certified.turning_motion`)."""
+    """psi/2 = L u/(2 B p) - g arctan(h tanh(u/2)), h = M_x/(L + M_z) at u = 0 (`core.rotation.turning_motion`)."""
     moments, rates = SEPARATRIX
     found = constants_of_motion(np.array(moments), ZERO, np.array(rates), ZERO, True, Scaled(0.0, 0.0, 0))
     pre = precession_constants(found, np.array(moments), ZERO, np.array(rates), ZERO)

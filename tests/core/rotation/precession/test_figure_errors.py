@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from core.bodies.composite import Composite, Part
+from core.bodies.exact_bodies import exact_body
 from core.bodies.measured import InertiaTensor, PrincipalMoments
 from core.bodies.solids import Cuboid, Cylinder
-from core.certified.exact_bodies import exact_body
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.rotation.precession.precession import FIGURES, precession

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from core.bodies.exact_inertia import ExactInertia
 from core.bodies.measured import InertiaTensor, PrincipalMoments
-from core.certified.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.rotation.precession.precession import Precession, precession

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.composite import Composite, Part
+from core.bodies.exact_inertia import ExactInertia
 from core.bodies.mass_properties import MassProperties, diagonal
 from core.bodies.measured import PointMasses
 from core.bodies.solids import Cuboid, Cylinder, Disc
-from core.certified.exact_inertia import ExactInertia
 from core.certified.stability import certified_stability
 from core.errors import InvalidParameter, NotApplicable
 from core.rotation.free_rotation import FreeRotation

@@ -2,7 +2,7 @@ import pytest
 from flint import arb, ctx
 
 from core.balls import Undetermined
-from core.certified.adaptive_precision import (
+from core.digits.adaptive_precision import (
     MOST_BITS,
     bits_for,
     check_digits,
@@ -10,7 +10,7 @@ from core.certified.adaptive_precision import (
     until_determined,
     working_bits,
 )
-from core.certified.decimals import decimal
+from core.digits.decimals import decimal
 from core.errors import BudgetExceeded, InvalidParameter
 
 

@@ -5,9 +5,9 @@ import pytest
 from pydantic import TypeAdapter
 
 from core.bodies import Body
+from core.bodies.exact_bodies import UNIFORM, exact_body
 from core.bodies.measured import PointMasses
 from core.bodies.solids import Cuboid, Cylinder, Ellipsoid
-from core.certified.exact_bodies import UNIFORM, exact_body
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable, UnphysicalInertia
 
 POINTS = [[0.5, 0.25, 1.0], [1.0, 0.0, -2.0], [-1.0, 3.0, 0.125], [2.0, 2.0, 2.0]]

@@ -11,12 +11,12 @@ from math import hypot
 from flint import fmpq
 
 from core.bodies.exact import parallel_axis, rotated, rotation
+from core.bodies.exact_inertia import ExactInertia, Matrix, Vector, of_matter, semidefinite, triple
 from core.bodies.mass_properties import About
-from core.certified.exact_inertia import ExactInertia, Matrix, Vector, of_matter, semidefinite, triple
-from core.certified.exact_inputs import Number, exact, exact_numbers, nearest
+from core.bodies.pinned import AT_THE_ORIGIN, not_free
+from core.digits.exact_inputs import Number, exact, exact_numbers, nearest
 from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
-from core.rotation.torque_free import AT_THE_ORIGIN, not_free
 
 LONGEST_LIST = 100_000
 

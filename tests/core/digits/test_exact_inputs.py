@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.balls import precision
-from core.certified.exact_inputs import LARGEST_EXPONENT, LONGEST_NUMERAL, enclosed, evenly_spaced, exact, exact_numbers
+from core.digits.exact_inputs import LARGEST_EXPONENT, LONGEST_NUMERAL, enclosed, evenly_spaced, exact, exact_numbers
 from core.errors import InvalidParameter
 
 

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from core.balls import precision
 from core.bodies.exact import rotated, rotation
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_start import ExactStart
+from core.bodies.exact_inertia import ExactInertia
+from core.rotation.exact_start import ExactStart
 
 OBLIQUE = [[2, 1, 1], [1, 3, "0.5"], [1, "0.5", 4]]
 

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from core.bodies.measured import THIN_ROD
 from core.bodies.principal_inertia import Symmetry
-from core.certified.exact_inputs import Number, exact_numbers
+from core.digits.exact_inputs import Number, exact_numbers
 from core.errors import InvalidParameter
 
 Vector = tuple[Fraction, Fraction, Fraction]

@@ -10,10 +10,10 @@ from typing import Any, Literal, NamedTuple
 from flint import arb, fmpq, fmpq_poly
 
 from core.balls import Undetermined
-from core.certified.adaptive_precision import bits_for, until_determined, working_bits
-from core.certified.decimals import FEWEST_DIGITS
-from core.certified.exact_inertia import ExactInertia, Vector, cross
-from core.certified.exact_inputs import enclosed
+from core.bodies.exact_inertia import ExactInertia, Vector, cross
+from core.digits.adaptive_precision import bits_for, until_determined, working_bits
+from core.digits.decimals import FEWEST_DIGITS
+from core.digits.exact_inputs import enclosed
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
 Balls = tuple[arb, arb, arb]

@@ -9,11 +9,11 @@ from typing import Any
 
 from core.bodies import Body
 from core.bodies.composite import Composite, Part
+from core.bodies.exact_inertia import ExactInertia, symmetric, triple
+from core.bodies.exact_mass import ExactMass
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.bodies.uniform import Uniform
-from core.certified.exact_inertia import ExactInertia, symmetric, triple
-from core.certified.exact_inputs import exact, exact_numbers, nearest
-from core.certified.exact_mass import ExactMass
+from core.digits.exact_inputs import exact, exact_numbers, nearest
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.quantities import members_of
 

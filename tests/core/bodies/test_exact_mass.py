@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.bodies.exact import rotation
-from core.certified.exact_mass import LONGEST_LIST, ExactMass, fmpq_of, fraction_of
+from core.bodies.exact_mass import LONGEST_LIST, ExactMass, fmpq_of, fraction_of
 from core.errors import InvalidParameter, UnphysicalInertia
 
 whole = st.integers(-9, 9)

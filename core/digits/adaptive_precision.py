@@ -9,7 +9,7 @@ from typing import TypeVar
 from flint import ctx
 
 from core.balls import Undetermined, precision
-from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS
+from core.digits.decimals import FEWEST_DIGITS, MOST_DIGITS
 from core.errors import BudgetExceeded, InvalidParameter
 from core.work import spend
 

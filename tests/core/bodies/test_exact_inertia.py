@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.certified.exact_inertia import ExactInertia, cross, of_matter
-from core.certified.exact_mass import ExactMass
+from core.bodies.exact_inertia import ExactInertia, cross, of_matter
+from core.bodies.exact_mass import ExactMass
 from core.errors import InvalidParameter
 
 small = st.integers(-9, 9)

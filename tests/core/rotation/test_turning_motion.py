@@ -15,9 +15,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.balls import precision
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_start import ExactStart
-from core.certified.turning_motion import TurningMotion, product
+from core.bodies.exact_inertia import ExactInertia
+from core.rotation.exact_start import ExactStart
+from core.rotation.turning_motion import TurningMotion, product
 from tests.oracles.free_rotation import precession_per_period, reference_angular_velocity
 from tests.oracles.polhode import Polhode, accelerates
 

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.balls import Undetermined, precision
-from core.certified.decimals import decimal, decimal_of_fraction, floor_below, numeral, place_of
-from core.certified.exact_inputs import enclosed
+from core.digits.decimals import decimal, decimal_of_fraction, floor_below, numeral, place_of
+from core.digits.exact_inputs import enclosed
 
 anything = st.builds(
     lambda top, bottom, exponent: Fraction(top, bottom) * Fraction(10) ** exponent,

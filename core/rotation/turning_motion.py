@@ -28,9 +28,9 @@ from typing import NamedTuple
 from flint import arb
 
 from core.balls import Undetermined
-from core.certified.exact_inputs import enclosed
-from core.certified.exact_start import Balls, ExactStart
+from core.digits.exact_inputs import enclosed
 from core.elliptic.ball_functions import ONE, ZERO, EllipticFunctions, PhaseOfTheta, carlson_rf, split
+from core.rotation.exact_start import Balls, ExactStart
 
 QuaternionBalls = tuple[arb, arb, arb, arb]
 
