@@ -1,4 +1,4 @@
-"""The motion of an initial value problem: by its closed form, by a named method, or by the cheapest that serves.
+"""The motion of an initial value problem: by its closed form, or by a named method.
 
 The errors of a method are measured against the closed form where there is one within reach, and estimated by a finer
 run otherwise.
@@ -15,8 +15,6 @@ import numpy as np
 from core.arrays import Floats
 from core.errors import (
     AccuracyUnreachable,
-    BudgetExceeded,
-    InvalidParameter,
     MechanicsError,
     NotApplicable,
     inside_field,
@@ -54,9 +52,7 @@ def state_motion(system: InitialValueProblem, question: MotionQuestion) -> Traje
     if method is None:
         if exact is not None:
             return _evaluated(system, exact, question)
-        if question.method is None:
-            return _refined(system, question)
-        method = question.method
+        method = ClosedFormEvaluation()
     with inside_field("method"):
         run = method.integrate(system, times, question.budget)
     if exact is not None:
@@ -165,21 +161,6 @@ def _compared_with_finer_run(
     )
     work = replace(run.work, evaluations_for_error=spent)
     return _trajectory(system, system.model, method, times, run.states, stated, work, warnings=uncertain)
-
-
-def _refined(system: InitialValueProblem, question: MotionQuestion) -> Trajectory:
-    try:
-        run = run_to_accuracy(system, question.times, question.accuracy, question.budget)
-    except InvalidParameter as fault:
-        # The client chose no setting; what it can change is how far the motion goes.
-        rule = f"be within reach of an integrator, whose {fault}"
-        raise InvalidParameter("times", rule, remedy=fault.remedy) from fault
-    except BudgetExceeded as fault:
-        remedy = "ask for earlier times or for less accuracy"
-        raise BudgetExceeded(fault.what, fault.needed, fault.limit, path=("times",), remedy=remedy) from fault
-    errors, drifted = run.errors, drifts(system, run.states)
-    stated = Accuracy(question.accuracy, errors.largest, "estimate (finer run)", errors.final, None, drifted)
-    return _trajectory(system, system.model, run.method, question.times, run.states, stated, run.work)
 
 
 def _inherited(exact: ClosedForm, question: MotionQuestion) -> tuple[float | None, tuple[Notice, ...]]:

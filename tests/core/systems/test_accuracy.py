@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.systems.accuracy import CANDIDATES, integrator, record, run_to_accuracy
 from core.systems.budget import Budget
-from tests.core.systems.systems import elliptic_functions, oscillator
+from core.systems.error_statements import measured
+from tests.core.systems.systems import Given, bell, elliptic_functions, kepler, lorenz, oscillator
 
 ACCURACIES = [10.0**-n for n in range(1, 16)]
 
@@ -45,6 +48,27 @@ def test_what_is_answered_reaches_the_accuracy_in_truth(accuracy: float) -> None
     assert true / largest <= run.errors.largest + 5e-14
     assert run.errors.largest <= accuracy
     assert run.work.evaluations_for_error > 0
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-6, 1e-9, 1e-11, 1e-12])
+@pytest.mark.parametrize("problem", [elliptic_functions(), kepler(0.5), bell()], ids=["elliptic", "kepler", "bell"])
+def test_no_more_than_the_accuracy_is_paid_for(problem: Given, accuracy: float) -> None:
+    times = np.linspace(-2, 2, 41) if len(problem.initial_state) == 1 else np.linspace(0, 10, 101)
+    assert problem.exact is not None
+    system = replace(problem, exact=None)
+    run = run_to_accuracy(system, times, accuracy, Budget())
+    true = measured(run.states, problem.exact.sample(times), times, problem.exact.largest_norm).largest
+    assert true <= run.errors.largest + problem.exact.bound
+    # More than a thousandfold better than the accuracy would be waste.
+    assert accuracy / 1e4 < run.errors.largest <= accuracy
+
+
+def test_chaos_is_refused_beyond_its_horizon_with_what_is_achievable() -> None:
+    assert run_to_accuracy(lorenz(), np.linspace(0, 5, 51), 1e-6, Budget()).errors.largest < 1e-6
+    with pytest.raises(AccuracyUnreachable) as refused:
+        run_to_accuracy(lorenz(), np.linspace(0, 60, 61), 1e-6, Budget())
+    assert refused.value.requested == 1e-6
+    assert refused.value.achievable > 0.01
 
 
 def test_what_cannot_be_reached_says_how_far_it_came() -> None:
