@@ -11,7 +11,7 @@ R. M. McConnell, K. Mehlhorn, S. Näher, P. Schweitzer, "Certifying algorithms",
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from random import Random
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,14 +19,16 @@ from core.errors import MechanicsError
 from core.multibody.answer import SceneSolution
 from core.multibody.audit.balanced import Moment, check_balance
 from core.multibody.audit.chosen_times import generator, quickness, rows_of, windows
+from core.multibody.audit.claims import check_claims
 from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.energy import Energies
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
 from core.multibody.audit.laws_at_samples import Measures, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, moved
-from core.multibody.audit.repetition import FRACTIONS, check_period, period_of, times_of_period
+from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Columns, Samples, joined, samples_of
+from core.multibody.audit.searches import Searches
 from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of
 from core.multibody.audit.windows import NODES, check_window, nodes
 from core.multibody.language.scene import Scene
@@ -58,7 +60,7 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
     if not description.moderate or answer.phases == ():
         return None
     with np.errstate(over="ignore", invalid="ignore"):
-        return _Audit(description, answer, generator(description, times)).worst(sampler)
+        return _Audit(description, answer, times).worst(sampler)
 
 
 class _Audit:
@@ -68,15 +70,16 @@ class _Audit:
     them come the start that the accelerations lead to, a short time before and after, and that of the description.
     """
 
-    def __init__(self, description: Description, answer: SceneSolution, random: Random) -> None:
-        self.description, self.answer, self.random = description, answer, random
+    def __init__(self, description: Description, answer: SceneSolution, times: Numbers) -> None:
+        self.description, self.answer, self.random = description, answer, generator(description, times)
+        self.latest = max(float(times.max(initial=0.0)), 0.0)
         found = answer.trajectory
         self.own_samples: Samples | None = None
         self.begin = self.end = 0.0
         if found is not None and len(found.time):
             self.begin, self.end = min(float(found.time.min()), 0.0), max(float(found.time.max()), 0.0)
             if all(f"{name}.velocity" in found.columns for name in description.bodies):
-                rows = rows_of(random, len(found.time))
+                rows = rows_of(self.random, len(found.time))
                 self.own_samples = samples_of(description, found.time, found.columns, rows)
         # A method that a client names computes samples of its own.
         self.own = found is None or found.method == CLOSED_FORM
@@ -84,12 +87,10 @@ class _Audit:
     def worst(self, sampler: Sampler) -> Failure | None:
         """Compare everything, and return the worst failure."""
         description, answer = self.description, self.answer
-        halves: list[float] = []
         samples = self.own_samples
         asked = self._asked(sampler)
         if asked is not None:
-            halves = asked[1]
-            samples = asked[0] if samples is None else asked[0].followed_by(samples)
+            samples = asked.samples if samples is None else asked.samples.followed_by(samples)
         if samples is None:
             return None
         after = None
@@ -106,7 +107,11 @@ class _Audit:
         sizes = Sizes(description, samples)
         check_samples(ledger, measures, samples, states, sizes)
         if asked is not None:
-            self._check_motion(ledger, samples, ahead, after, measures, halves, sizes)
+            self._check_motion(ledger, samples, ahead, after, measures, asked, sizes)
+            if asked.searches is not None:
+                found = answer.trajectory
+                own = (np.zeros(0), {}) if found is None else (found.time, found.columns)
+                asked.searches.check(ledger, asked.columns, *own)
         return ledger.worst
 
     def _check_motion(
@@ -116,7 +121,7 @@ class _Audit:
         ahead: Placement,
         after: AfterStart | None,
         measures: Sequence[Measures],
-        halves: Sequence[float],
+        asked: _Asked,
         sizes: Sizes,
     ) -> None:
         """Compare what needs the start or windows of the motion."""
@@ -135,7 +140,7 @@ class _Audit:
                     if rest is not None:
                         law, allowed = "equation of the chain at the start", 8.0 * ledger.rounding * rest[1]
                         ledger.compare(law, own.connection.name, start.times, rest[0], allowed)
-        for number, half in enumerate(halves):
+        for number, half in enumerate(asked.halves):
             rows = slice(1 + number * NODES, 1 + (number + 1) * NODES)
             window = samples.at(rows)
             gains = check_window(ledger, description, freedoms, window, _rows(ahead, rows), half, sizes.extent)
@@ -149,10 +154,11 @@ class _Audit:
                        stated=True)
             )  # fmt: skip
         check_balance(ledger, description, freedoms, samples, motion, moments)
-        if self.own and period_of(answer) is not None:
-            first = 1 + len(halves) * NODES
-            later = samples.at(slice(first, first + len(FRACTIONS)))
-            check_period(ledger, description, answer, start, later)
+        if asked.repeated:
+            first = 1 + len(asked.halves) * NODES
+            later = samples.at(slice(first, first + asked.repeated))
+            check_repetition(ledger, description, answer, start, later)
+        check_claims(ledger, answer, samples, None if after is None else after.gains)
         if _spun(description, samples):
             self._check_energy(ledger, samples)
 
@@ -173,24 +179,56 @@ class _Audit:
         if losses is not None:
             energies.check(ledger, losses)
 
-    def _asked(self, sampler: Sampler) -> tuple[Samples, list[float]] | None:
-        """Return samples of the motion at the start and in windows, with half of the width of each of these.
+    def _asked(self, sampler: Sampler) -> _Asked | None:
+        """Return samples of the motion at the start, in windows, after its period, and where something was found.
 
         None where the motion is not known there: laws that need it are not checked then.
         """
         try:
             placed: list[tuple[float, float]] = []
+            searches, repeated = None, np.zeros(0)
             if self.own and self.end > self.begin:
                 rated = self.own_samples
                 if rated is None:
                     rated = samples_of(self.description, np.zeros(1), sampler(np.zeros(1)), slice(None))
                 placed = windows(self.random, self.answer, self.begin, self.end, quickness(self.description, rated))
-            period = period_of(self.answer) if self.own else None
-            repeated = [] if period is None else [times_of_period(period)]
-            asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), *repeated])
-            return samples_of(self.description, asked, sampler(asked), slice(None)), [half for _, half in placed]
+                if self.answer.occurrences or self.answer.extremes:
+                    ended = self.answer.ended
+                    searches = Searches(self.answer, self.random, self.latest if ended is None else ended.time)
+            if self.own:
+                repeated = times_of_period(self.answer)
+            found = np.zeros(0) if searches is None else searches.times
+            asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), repeated, found])
+            columns = sampler(asked)
+            rows = slice(0, len(asked) - len(found))
+            samples = samples_of(self.description, asked, columns, rows)
+            return _Asked(samples, columns, [half for _, half in placed], len(repeated), searches)
         except MechanicsError:
             return None
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """Samples of the motion at times that the audit chose.
+
+    Attributes
+    ----------
+    samples : Samples
+        At the start, in windows, after the period.
+    columns : mapping of str to Column
+        There, and at the times of the searches behind.
+    halves : list of float
+        Half of the widths of the windows (s).
+    repeated : int
+        How many samples belong to the period.
+    searches : Searches or None
+    """
+
+    samples: Samples
+    columns: Columns
+    halves: list[float]
+    repeated: int
+    searches: Searches | None
 
 
 def _spun(description: Description, samples: Samples) -> bool:

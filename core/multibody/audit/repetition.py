@@ -17,16 +17,79 @@ TOLD_APART = 1e3
 """How many times larger than what is known of it a motion is at least of which parts of the period are compared."""
 
 
-def period_of(answer: SceneSolution) -> float | None:
-    """Return the period (s) after which all of the state repeats; None where there is none, or up to a turn alone."""
-    if answer.period is None or any(part.precession is not None for part in answer.model.apart):
+def precession_of(answer: SceneSolution) -> tuple[float, float] | None:
+    """Return by which angle the state is turned about the vertical after the period, and its error (rad)."""
+    own = [part for part in answer.model.apart if part.precession is not None]
+    if len(own) != 1 or own[0].precession is None:
         return None
-    return answer.period
+    errors = own[0].errors
+    return own[0].precession, 0.0 if errors is None or errors.precession is None else errors.precession
 
 
-def times_of_period(period: float) -> Numbers:
-    """Return the times at which the state is compared."""
-    return period / np.array(FRACTIONS)
+def times_of_period(answer: SceneSolution) -> Numbers:
+    """Return the times at which the state is compared with that of the start; none without a period."""
+    if answer.period is None:
+        return np.zeros(0)
+    return answer.period / np.array(FRACTIONS if precession_of(answer) is None else FRACTIONS[:1])
+
+
+def check_repetition(
+    ledger: Ledger, description: Description, answer: SceneSolution, start: Samples, later: Samples
+) -> None:
+    """Compare the state after a period with that of the start, up to a turn where the answer says so.
+
+    Parameters
+    ----------
+    start, later : Samples
+        One sample, and those at the times of `times_of_period`.
+    """
+    winding = precession_of(answer)
+    if winding is None:
+        check_period(ledger, description, answer, start, later)
+    else:
+        check_precession(ledger, description, answer, start, later, *winding)
+
+
+def check_precession(
+    ledger: Ledger,
+    description: Description,
+    answer: SceneSolution,
+    start: Samples,
+    later: Samples,
+    winding: float,
+    error: float,
+) -> None:
+    """Require that velocities and axes of tops after a period are those of the start, turned about the vertical.
+
+    Heights are the same. About which vertical the state is turned the answer does not say.
+
+    Parameters
+    ----------
+    winding, error : float
+        Angle of the turn (rad).
+    """
+    assert answer.period is not None, "the caller knows the period"
+    late = max(answer.period_error or 0.0, ledger.rounding * answer.period)
+    c, s = np.cos(winding), np.sin(winding)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    for name, twist in start.motion.items():
+        then, known = later.motion[name].velocity, later.errors[name][:, VELOCITY]
+        turn = turn[: then.shape[1], : then.shape[1]]
+        speed, gain = float(np.abs(then).max()), _gain(answer, later, name)
+        off = np.abs(then - twist.velocity @ turn.T).max(axis=1)
+        allowed = 4.0 * known + (error + 4.0 * ledger.rounding) * speed + 4.0 * late * gain
+        ledger.compare("velocities return, turned, after the period", name, later.times, off, allowed)
+        shown = start.placement[name].rotation, later.placement[name].rotation
+        if twist.spin is None and shown[0] is not None and shown[1] is not None:
+            k = axis_of_top(description.bodies[name], description)
+            off = np.abs(shown[1][..., k] - shown[0][..., k] @ turn.T).max(axis=1)
+            allowed = 4.0 * later.errors[name][:, ATTITUDE] + error + 4.0 * ledger.rounding + late * gain
+            ledger.compare("the axis returns, turned, after the period", name, later.times, off, allowed)
+        if then.shape[1] == 3:
+            heights = [float(one.placement[name].position[0, 2]) for one in (start, later)]
+            allowed = 4.0 * later.errors[name][:, POSITION] + 4.0 * ledger.rounding * abs(heights[0]) + late * speed
+            off = np.full(1, abs(heights[1] - heights[0]))
+            ledger.compare("heights return after the period", name, later.times, off, allowed)
 
 
 def check_period(
@@ -39,7 +102,7 @@ def check_period(
     start, later : Samples
         One sample, and those at the times of `times_of_period`.
     """
-    period = period_of(answer)
+    period = answer.period
     assert period is not None, "the caller knows the period"
     late = max(answer.period_error or 0.0, ledger.rounding * period)
     away, allowed = _apart(description, answer, start, later, late, ledger.rounding)

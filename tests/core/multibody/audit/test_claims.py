@@ -1,0 +1,57 @@
+"""Models that claim more than the motion does are refused; so is a wrong angle of precession."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+from tests.core.multibody.audit.spoiled import Audited, answered, description_of
+
+UNEVEN = ("physical-pendulum", "damped-oscillator", "two-masses-two-springs", "kepler-ellipse", "crank-slider")
+UNIFORM = ("atwood-machine", "blocks-on-incline", "movable-wedge", "yo-yo")
+PRECESSING = ("spherical-pendulum", "lagrange-top", "precessing-top", "ball-and-stick")
+
+
+@cache
+def right(scene: str) -> Audited:
+    return answered(description_of(scene))
+
+
+def claimed(one: Audited, model: str) -> Audited:
+    """Return an answer all parts of which claim a model."""
+    apart = tuple(replace(part, name=model) for part in one.answer.model.apart)
+    return replace(one, answer=replace(one.answer, model=replace(one.answer.model, apart=apart)))
+
+
+@pytest.mark.parametrize("scene", UNEVEN)
+@pytest.mark.parametrize("model", ["rest", "constant acceleration"])
+def test_what_moves_unevenly_is_neither_at_rest_nor_uniform(scene: str, model: str) -> None:
+    one = right(scene)
+    assert one.failure() is None
+    assert claimed(one, model).failure() is not None
+
+
+@pytest.mark.parametrize("scene", UNIFORM)
+def test_what_is_accelerated_is_not_at_rest(scene: str) -> None:
+    assert right(scene).failure() is None
+    if not right(scene).answer.phases:
+        assert claimed(right(scene), "rest").failure() is not None
+
+
+def test_a_wrong_angle_of_precession_is_refused() -> None:
+    count = 0
+    for scene in PRECESSING:
+        one = right(scene)
+        parts = one.answer.model.apart
+        if not any(part.precession is not None for part in parts) or one.answer.period is None:
+            continue
+        assert one.failure() is None
+        apart = tuple(
+            part if part.precession is None else replace(part, precession=part.precession + 1e-6) for part in parts
+        )
+        spoiled = replace(one, answer=replace(one.answer, model=replace(one.answer.model, apart=apart)))
+        assert spoiled.failure() is not None, scene
+        count += 1
+    assert count >= 1
