@@ -23,7 +23,7 @@ from core.multibody.audit.claims import check_claims
 from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.energy import Energies
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
-from core.multibody.audit.laws_at_samples import Measures, Sizes, States, check_samples, measured
+from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, moved
 from core.multibody.audit.repetition import check_repetition, times_of_period
@@ -120,7 +120,7 @@ class _Audit:
         samples: Samples,
         ahead: Placement,
         after: AfterStart | None,
-        measures: Sequence[Measures],
+        measures: Sequence[MeasureValues],
         asked: _Asked,
         sizes: Sizes,
     ) -> None:
@@ -255,12 +255,12 @@ def _described(description: Description) -> tuple[Placement, Motion]:
     return placement, motion
 
 
-def _was_rounded(description: Description, answer: SceneSolution, measures: Sequence[Measures]) -> bool:
+def _was_rounded(description: Description, answer: SceneSolution, measures: Sequence[MeasureValues]) -> bool:
     """Return whether positions or velocities were taken as rounded, and moved so that connections hold.
 
     Parameters
     ----------
-    measures : sequence of Measures
+    measures : sequence of MeasureValues
         Of which the last sample is the start as it is described.
     """
     if any("rounding" in sentence or "rounded" in sentence for sentence in answer.model.noticed):

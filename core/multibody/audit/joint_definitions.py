@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.multibody.audit import joints
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
-from core.multibody.audit.joints import Coincidence, OnCircle, OnParabola, OnPlane, attitude_to, perpendicular
+from core.multibody.audit.joints import (
+    Coincidence,
+    OnCircle,
+    OnParabola,
+    OnPlane,
+    RodDefinition,
+    SliderDefinition,
+    WeldDefinition,
+    attitude_to,
+    perpendicular,
+)
 from core.multibody.audit.placement import Numbers, Place, length
 from core.multibody.language.connection import TwoEnded
 from core.multibody.language.joints import BallJoint, Pin, Rod, Slider, Track, Weld
@@ -39,7 +48,7 @@ def weld(connection: Weld, reader: Reader, name: str, path: Path) -> Definition:
     carrier = 1 if b.body is not None and reader.turns(b.body) else 0
     between = ends[1 - carrier].at(reader.start) - ends[carrier].at(reader.start)
     arm = _in_body(reader, ends[carrier].body, tuple(between.tolist()))
-    return joints.Weld(name, (*a.bodies, *b.bodies), a, b, carrier, arm, _attitude(reader, a, b))
+    return WeldDefinition(name, (*a.bodies, *b.bodies), a, b, carrier, arm, _attitude(reader, a, b))
 
 
 @definition_of.register
@@ -51,7 +60,7 @@ def slider(connection: Slider, reader: Reader, name: str, path: Path) -> Definit
         along = reader.unit(connection.direction, (*path, "direction"))
     else:
         along = reader.direction(connection.slope, (*path, "slope"))
-    return joints.Slider(name, (*a.bodies, *b.bodies), a, b, perpendicular(along), _attitude(reader, a, b))
+    return SliderDefinition(name, (*a.bodies, *b.bodies), a, b, perpendicular(along), _attitude(reader, a, b))
 
 
 @definition_of.register
@@ -60,7 +69,7 @@ def rod(connection: Rod, reader: Reader, name: str, path: Path) -> Definition:
     a, b = ends_of(connection, reader, path)
     given = connection.length
     size = distance_at_start(reader, a, b) if given is None else reader.number(given, (*path, "length"))
-    return joints.Rod(name, (*a.bodies, *b.bodies), a, b, size)
+    return RodDefinition(name, (*a.bodies, *b.bodies), a, b, size)
 
 
 @definition_of.register
@@ -75,7 +84,7 @@ def track(connection: Track, reader: Reader, name: str, path: Path) -> Definitio
         return OnPlane(name, bodies, place, at, reader.unit(on["normal"], (*where, "normal")))
     if "direction" in on:
         direction = reader.unit(on["direction"], (*where, "direction"))
-        return joints.Slider(name, bodies, place, at, perpendicular(direction))
+        return SliderDefinition(name, bodies, place, at, perpendicular(direction))
     c, s = reader.direction(on.get("slope"), (*where, "slope"))
     if "curvature" in on:
         return OnParabola(name, bodies, place, at, (c, s), reader.number(on["curvature"], (*where, "curvature")))

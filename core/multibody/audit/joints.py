@@ -107,7 +107,7 @@ class Coincidence(Definition):
 
 
 @dataclass(frozen=True)
-class Rod(Definition):
+class RodDefinition(Definition):
     """Two places stay at a distance (m); the force is the pull."""
 
     kind: ClassVar[str] = "rod"
@@ -134,7 +134,7 @@ class Rod(Definition):
 
 
 @dataclass(frozen=True)
-class Weld(Definition):
+class WeldDefinition(Definition):
     """Two bodies move as one; the force is that on the first, at its place.
 
     Attributes
@@ -183,7 +183,7 @@ class Weld(Definition):
 
 
 @dataclass(frozen=True)
-class Slider(Definition):
+class SliderDefinition(Definition):
     """A place stays on a line through another, fixed in the body of that; the bodies do not turn to each other.
 
     Attributes

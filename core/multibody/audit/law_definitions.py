@@ -4,15 +4,25 @@ from __future__ import annotations
 
 from math import hypot
 
-from core.multibody.audit import laws
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.joint_definitions import distance_at_start, ends_of
-from core.multibody.audit.laws import Attraction, ConstantForce, ConstantTorque, SpringWithoutLength, TurnDamper
+from core.multibody.audit.laws import (
+    Attraction,
+    ConstantForce,
+    ConstantTorque,
+    DamperDefinition,
+    MotorDefinition,
+    SpinningFrameDefinition,
+    SpringDefinition,
+    SpringWithoutLength,
+    TorsionSpringDefinition,
+    TurnDamper,
+)
 from core.multibody.language.forces import (
+    AppliedForce,
     Damper,
-    Force,
     Gravitation,
     InverseSquare,
     Motor,
@@ -31,11 +41,11 @@ def spring(connection: Spring, reader: Reader, name: str, path: Path) -> Definit
     bodies = (*a.bodies, *b.bodies)
     stiffness = reader.number(connection.stiffness, (*path, "stiffness"))
     if connection.rest_length is None:
-        return laws.Spring(name, bodies, a, b, stiffness, distance_at_start(reader, a, b))
+        return SpringDefinition(name, bodies, a, b, stiffness, distance_at_start(reader, a, b))
     rest = reader.number(connection.rest_length, (*path, "rest_length"))
     if rest == 0.0:
         return SpringWithoutLength(name, bodies, a, b, stiffness)
-    return laws.Spring(name, bodies, a, b, stiffness, rest)
+    return SpringDefinition(name, bodies, a, b, stiffness, rest)
 
 
 @definition_of.register
@@ -44,10 +54,10 @@ def torsion_spring(connection: TorsionSpring, reader: Reader, name: str, path: P
     bodies, a, b = _turning(connection)
     stiffness = reader.number(connection.stiffness, (*path, "stiffness"))
     if connection.rest_angle is None:
-        rest = float(laws.TorsionSpring(name, bodies, a, b, stiffness, 0.0).turn(reader.start))
+        rest = float(TorsionSpringDefinition(name, bodies, a, b, stiffness, 0.0).turn(reader.start))
     else:
         rest = reader.number(connection.rest_angle, (*path, "rest_angle"))
-    return laws.TorsionSpring(name, bodies, a, b, stiffness, rest)
+    return TorsionSpringDefinition(name, bodies, a, b, stiffness, rest)
 
 
 @definition_of.register
@@ -57,13 +67,13 @@ def damper(connection: Damper, reader: Reader, name: str, path: Path) -> Definit
     if connection.measure == "turn":
         return TurnDamper(name, *_turning(connection), coefficient)
     a, b = ends_of(connection, reader, path)
-    return laws.Damper(name, (*a.bodies, *b.bodies), a, b, coefficient)
+    return DamperDefinition(name, (*a.bodies, *b.bodies), a, b, coefficient)
 
 
 @definition_of.register
 def motor(connection: Motor, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a motor."""
-    return laws.Motor(name, *_turning(connection), reader.number(connection.rate, (*path, "rate")))
+    return MotorDefinition(name, *_turning(connection), reader.number(connection.rate, (*path, "rate")))
 
 
 @definition_of.register
@@ -84,7 +94,7 @@ def inverse_square(connection: InverseSquare, reader: Reader, name: str, path: P
 
 
 @definition_of.register
-def force(connection: Force, reader: Reader, name: str, path: Path) -> Definition:
+def force(connection: AppliedForce, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a constant force."""
     place = reader.place(connection.place, (*path, "place"))
     return ConstantForce(name, place.bodies, place, reader.vector(connection.force, (*path, "force")))
@@ -109,7 +119,9 @@ def spinning_frame(connection: SpinningFrame, reader: Reader, name: str, path: P
         across = (1.0, 0.0) if not any(g) else (-g[1] / hypot(*g), g[0] / hypot(*g))
     bodies = tuple(reader.bodies.values())
     rate = reader.number(connection.rate, (*path, "rate"))
-    return laws.SpinningFrame(name, tuple(reader.bodies), rate, reader.vector(given, (*path, "at")), across, bodies)
+    return SpinningFrameDefinition(
+        name, tuple(reader.bodies), rate, reader.vector(given, (*path, "at")), across, bodies
+    )
 
 
 def _turning(connection: TorsionSpring | Damper | Motor) -> tuple[tuple[str, ...], str, str | None]:

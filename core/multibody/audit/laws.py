@@ -32,7 +32,7 @@ class Pull(Definition):
 
 
 @dataclass(frozen=True)
-class Spring(Pull):
+class SpringDefinition(Pull):
     """A linear spring (N/m, m)."""
 
     kind: ClassVar[str] = "spring"
@@ -94,7 +94,7 @@ class SpringWithoutLength(Definition):
 
 
 @dataclass(frozen=True)
-class Damper(Pull):
+class DamperDefinition(Pull):
     """A force against the rate of a distance (N s/m)."""
 
     kind: ClassVar[str] = "damper"
@@ -164,7 +164,7 @@ class Twisting(Definition):
 
 
 @dataclass(frozen=True)
-class TorsionSpring(Twisting):
+class TorsionSpringDefinition(Twisting):
     """A linear spring between two turns (N m/rad, rad)."""
 
     kind: ClassVar[str] = "torsion-spring"
@@ -205,7 +205,7 @@ class TurnDamper(Twisting):
 
 
 @dataclass(frozen=True)
-class Motor(Twisting):
+class MotorDefinition(Twisting):
     """A turn has a given rate (rad/s)."""
 
     kind: ClassVar[str] = "motor"
@@ -266,7 +266,7 @@ class ConstantTorque(Definition):
 
 
 @dataclass(frozen=True)
-class SpinningFrame(Definition):
+class SpinningFrameDefinition(Definition):
     """Centrifugal and Coriolis forces in a frame that spins at a rate (rad/s) about an axis through `at`.
 
     Attributes

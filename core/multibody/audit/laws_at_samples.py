@@ -21,7 +21,7 @@ States = Mapping[str, Numbers]
 
 
 @dataclass(frozen=True)
-class Measures:
+class MeasureValues:
     """The measures of a connection at the samples of an audit, moved by an imaginary step along the motion.
 
     Attributes
@@ -35,12 +35,12 @@ class Measures:
     gaps: Mapping[str, Numbers]
 
 
-def measured(description: Description, ahead: Placement) -> list[Measures]:
+def measured(description: Description, ahead: Placement) -> list[MeasureValues]:
     """Return the measures of all connections of which the samples have enough."""
     found = []
     for connection in description.connections:
         try:
-            found.append(Measures(connection, connection.held(ahead), connection.gaps(ahead)))
+            found.append(MeasureValues(connection, connection.held(ahead), connection.gaps(ahead)))
         except Undefined:
             continue
     return found
@@ -88,12 +88,14 @@ class Sizes:
         return size + arm, speed
 
 
-def check_samples(ledger: Ledger, measures: Sequence[Measures], samples: Samples, states: States, sizes: Sizes) -> None:
+def check_samples(
+    ledger: Ledger, measures: Sequence[MeasureValues], samples: Samples, states: States, sizes: Sizes
+) -> None:
     """Compare all connections with their definitions at some samples.
 
     Parameters
     ----------
-    measures : sequence of Measures
+    measures : sequence of MeasureValues
         At these samples, and perhaps at others behind them.
     """
     for own in measures:

@@ -11,7 +11,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.chosen_times import quickness
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import Ledger
-from core.multibody.audit.laws_at_samples import Measures
+from core.multibody.audit.laws_at_samples import MeasureValues
 from core.multibody.audit.newton import Acceleration
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, cross, turned
 from core.multibody.audit.samples import ATTITUDE, POSITION, Samples, axis_of_top
@@ -110,12 +110,12 @@ class AfterStart:
             placement[name], motion[name] = _after(self.start.placement[name], twist, self.gains[name], step)
         return placement, motion
 
-    def check(self, ledger: Ledger, measures: Sequence[Measures], first: int) -> None:
+    def check(self, ledger: Ledger, measures: Sequence[MeasureValues], first: int) -> None:
         """Require that the accelerations keep what is held: by the rates before and after the start.
 
         Parameters
         ----------
-        measures : sequence of Measures
+        measures : sequence of MeasureValues
         first : int
             Number of the first of the two samples among them.
         """

@@ -6,13 +6,18 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.multibody.audit import strings
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.contact_definitions import touch_of
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.placement import length
-from core.multibody.audit.strings import Knot, Run, run_of
+from core.multibody.audit.strings import (
+    ChainDefinition,
+    Knot,
+    Run,
+    StringDefinition,
+    run_of,
+)
 from core.multibody.language.strings import Chain, String
 
 
@@ -38,7 +43,7 @@ def string(connection: String, reader: Reader, name: str, path: Path) -> Definit
         part = name if len(ends) == 2 else f"{name}.{number + 1}"
         runs.append(run_of(part, tuple(knots[first : last + 1]), pairs, given, reader.start))
     bodies = tuple(dict.fromkeys(body for knot in knots for body in knot.place.bodies))
-    return strings.String(name, bodies, tuple(runs), touch_of(reader, name, path, connection.restitution))
+    return StringDefinition(name, bodies, tuple(runs), touch_of(reader, name, path, connection.restitution))
 
 
 @definition_of.register
@@ -55,4 +60,4 @@ def chain(connection: Chain, reader: Reader, name: str, path: Path) -> Definitio
     bodies = (*first.bodies, *last.bodies)
     fall = float(np.dot(reader.gravity, peg.offset))
     ends, both = (first, last), (ways[0], ways[1])
-    return strings.Chain(name, bodies, ends, peg.offset, both, density, size, (pulls[0], pulls[1]), fall)
+    return ChainDefinition(name, bodies, ends, peg.offset, both, density, size, (pulls[0], pulls[1]), fall)

@@ -141,7 +141,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class String(Definition):
+class StringDefinition(Definition):
     """An inextensible string: every run of it is at most as long as it is; tensions pull its places together."""
 
     kind: ClassVar[str] = "string"
@@ -214,7 +214,7 @@ def run_of(name: str, knots: tuple[Knot, ...], sides: tuple[tuple[str | None, st
 
 
 @dataclass(frozen=True)
-class Chain(Definition):
+class ChainDefinition(Definition):
     """A heavy chain over a small smooth peg of the ground, straight on both sides (kg/m, m).
 
     Attributes

@@ -10,7 +10,7 @@ from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Sur
 from core.multibody.language.written import Number, Place
 
 
-class Touching(Connection):
+class SurfaceConnection(Connection):
     """What touches a surface of the ground or of a body: `place` touches `on`, or `a` touches `b`."""
 
     place: Place | None
@@ -41,7 +41,7 @@ class Touching(Connection):
 
 
 @dataclass(frozen=True)
-class Rolling(Touching):
+class Rolling(SurfaceConnection):
     """A rim rolls without slip: `place` on a face or circle `on`, or body `a` on body `b`, or `inside` it."""
 
     place: str | None = None
@@ -53,12 +53,12 @@ class Rolling(Touching):
     kind: ClassVar[str] = "rolling"
 
     def turns(self, place: object, surroundings: Surroundings) -> bool:
-        """See `Touching.turns`."""
+        """See `SurfaceConnection.turns`."""
         return True
 
 
 @dataclass(frozen=True)
-class Contact(Touching):
+class Contact(SurfaceConnection):
     """What touches pushes and does not pull.
 
     `place`, a point or a body with a rim, does not pass `on`: a face ``{at, slope}``, free on the left of its slope, or
@@ -85,5 +85,5 @@ class Contact(Touching):
     one_sided = True
 
     def turns(self, place: object, surroundings: Surroundings) -> bool:
-        """See `Touching.turns`; in space a ball alone has friction that turns it."""
+        """See `SurfaceConnection.turns`; in space a ball alone has friction that turns it."""
         return surroundings.plane or (self.friction is not None and surroundings.rim(place))

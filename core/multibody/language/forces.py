@@ -114,7 +114,7 @@ class SpinningFrame(Connection):
 
 
 @dataclass(frozen=True)
-class Force(Connection):
+class AppliedForce(Connection):
     """A constant force on a place (N)."""
 
     place: Place

@@ -8,8 +8,8 @@ from types import MappingProxyType
 from core.multibody.language.connection import Connection
 from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.forces import (
+    AppliedForce,
     Damper,
-    Force,
     Gravitation,
     InverseSquare,
     Motor,
@@ -42,7 +42,7 @@ KINDS: Mapping[str, type[Connection]] = MappingProxyType(
             Damper,
             Motor,
             SpinningFrame,
-            Force,
+            AppliedForce,
             Torque,
         )
     }

@@ -20,8 +20,7 @@ from core.multibody.algebra.polynomials import (
     product,
 )
 from core.multibody.language.connection import TwoEnded
-from core.multibody.language.forces import Damper, Motor, SpinningFrame, Spring, Torque, TorsionSpring
-from core.multibody.language.forces import Force as AppliedForce
+from core.multibody.language.forces import AppliedForce, Damper, Motor, SpinningFrame, Spring, Torque, TorsionSpring
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.frames import Point

@@ -16,10 +16,10 @@ import numpy as np
 from core.multibody.audit.bodies import Reader
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition
-from core.multibody.audit.joints import Rod
+from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.laws import Pull
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement
-from core.multibody.audit.strings import Chain, Straight, String
+from core.multibody.audit.strings import ChainDefinition, Straight, StringDefinition
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 
 _STENCIL = np.array([4.0, 3.0, 2.0, 1.0, -1.0, -2.0, -3.0, -4.0])
@@ -124,16 +124,20 @@ class Mechanism:
         """Rows that hold rates alone."""
         self.one_sided = [entry for one in self.definitions for entry in _one_sided(one, placement, still, reader)]
         self.acting = [one for one in self.definitions if _acts(one)]
-        self.chains = [one for one in self.definitions if isinstance(one, Chain)]
+        self.chains = [one for one in self.definitions if isinstance(one, ChainDefinition)]
         self.every_straight = [
-            part for one in self.definitions if isinstance(one, String) for run in one.runs for part in run.parts
+            part
+            for one in self.definitions
+            if isinstance(one, StringDefinition)
+            for run in one.runs
+            for part in run.parts
         ]
-        self.shortest_rod = min([1.0, *(one.length for one in self.definitions if isinstance(one, Rod))])
+        self.shortest_rod = min([1.0, *(one.length for one in self.definitions if isinstance(one, RodDefinition))])
         self.pulls = [one for one in self.definitions if isinstance(one, Pull)]
         self.straights = [
             (run.name, part)
             for one in self.definitions
-            if isinstance(one, String)
+            if isinstance(one, StringDefinition)
             for run in one.runs
             if len(run.parts) > 1 or run.parts[0].senses != (0, 0)
             for part in run.parts
@@ -269,7 +273,7 @@ def _one_sided(one: Any, placement: Placement, still: Motion, reader: Reader) ->
     for key in one.gaps(placement):
         touch = one.touch
         closes, opens, rolls = "touch", "lift-off", False
-        if isinstance(one, String):
+        if isinstance(one, StringDefinition):
             closes, opens = "taut", "slack"
         elif isinstance(one, Stop):
             closes, opens = "stop", "release"
