@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -37,23 +36,12 @@ PROBES = (3e-4, 3e-3, 1e-2, 3e-2)
 """Times after which a figure without a sign is seen, relative to that in which the scene turns or falls by itself."""
 MOST = 1500
 """Combinations of states that are tried."""
+LEAST = 1e-3
+"""Speed (m/s, rad/s) or acceleration beside which rounding has no sign, where nothing else moves."""
+ALIKE = 1e-6
+"""Share of the accelerations of a scene within which those of two combinations are the same."""
 
 Probe = Callable[[Phase, State, float], State]
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """States that go with accelerations."""
-
-    phase: Phase
-    solution: Solution
-
-
-def time_scale(solution: Solution, state: State) -> float:
-    """Return the time in which a scene moves by itself (s)."""
-    fast = float(np.abs(state.rates).max(initial=0.0))
-    faster = float(np.sqrt(np.abs(solution.accelerations).max(initial=0.0)))
-    return 1.0 / max(fast, faster, 1e-3)
 
 
 def decide(mechanism: Mechanism, state: State, touching: Sequence[int], probe: Probe, fastest: float) -> Phase:
@@ -69,211 +57,162 @@ def decide(mechanism: Mechanism, state: State, touching: Sequence[int], probe: P
     Undecided
         Where no states, or several, go with a motion.
     """
-    every = mechanism.one_sided
     _, rates = mechanism.gap_rates(state)
-    speed = max(fastest, 1e-3)
-    active = [i for i in touching if abs(rates[i]) <= NEARLY * speed]
-    if not active:
-        return Phase(mechanism, [OPEN] * len(every))
-    whole = Phase(mechanism, [STICK if i in active and every[i].slips else CLOSED if i in active else OPEN
-                              for i in range(len(every))])  # fmt: skip
-    rows, _, slips, _ = whole.rows(state)
-    choices = {i: _choices(every[i].slips, rows.rates[slips[i]] if i in slips else None, speed) for i in active}
+    still = NEARLY * max(fastest, LEAST)
+    active = [i for i in touching if abs(rates[i]) <= still]
     # Groups that do not push one another are decided apart: what is still undecided stays closed, if it can.
-    modes = [choices[i][0] if i in choices else OPEN for i in range(len(every))]
-    for group in Struck(mechanism, state, active).clusters():
-        modes = _decide_group(mechanism, state, modes, group, choices, probe)
+    modes = [OPEN] * len(mechanism.one_sided)
+    if active:
+        struck = Struck(mechanism, state, active)
+        choices = {i: _choices(mechanism.one_sided[i].slips, struck.slip[i] @ state.rates, still) for i in active}
+        for i in active:
+            modes[i] = choices[i][0]
+        for group in struck.clusters():
+            modes = _Group(mechanism, state, group, probe).decided(modes, choices)
     return Phase(mechanism, modes)
 
 
-def _decide_group(
-    mechanism: Mechanism,
-    state: State,
-    settled: list[Mode],
-    group: Sequence[int],
-    choices: Mapping[int, tuple[Mode, ...]],
-    probe: Probe,
-) -> list[Mode]:
-    """Return all states, with those of one group of contacts decided."""
-    if int(np.prod([len(choices[i]) for i in group])) > MOST:
-        raise NotSupported("more contacts at once than combinations of which are tried")
-    consistent: list[Candidate] = []
-    every = list(product(*(choices[i] for i in group)))
-    # Several directions at once of what begins to slide in space are looked for only where nothing else is possible.
-    for later in (False, True):
-        for chosen in every:
-            if (_onsets(chosen) > 1) is not later or (later and consistent):
-                continue
+def _choices(width: int, slip: Floats, still: float) -> tuple[Mode, ...]:
+    size = float(np.linalg.norm(slip))
+    if size > still:
+        return (Mode(Kind.SLIDE, tuple((slip / size).tolist())), OPEN)
+    sliding = {0: (), 1: (Mode(Kind.SLIDE, (1.0,)), Mode(Kind.SLIDE, (-1.0,)))}.get(width, (Mode(Kind.SLIDE),))
+    return (STICK if width else CLOSED, *sliding, OPEN)
+
+
+class _Group:
+    """Contacts that push one another, in a state."""
+
+    def __init__(self, mechanism: Mechanism, state: State, group: Sequence[int], probe: Probe) -> None:
+        self.mechanism, self.state, self.group, self.probe = mechanism, state, group, probe
+        self.speed = max(float(np.abs(state.rates).max(initial=0.0)), LEAST)
+
+    def decided(self, settled: list[Mode], choices: Mapping[int, tuple[Mode, ...]]) -> list[Mode]:
+        """Return all states, with those of this group decided."""
+        every = list(product(*(choices[i] for i in self.group)))
+        if len(every) > MOST:
+            raise NotSupported("more contacts at once than combinations of which are tried")
+        consistent: list[tuple[Phase, Solution]] = []
+        # Several directions at once of what begins to slide in space are tried only where nothing else is possible.
+        for chosen in sorted(every, key=lambda modes: _onsets(modes) > 1):
             modes = list(settled)
-            for i, mode in zip(group, chosen, strict=True):
+            for i, mode in zip(self.group, chosen, strict=True):
                 modes[i] = mode
-            if any(sticks_more(other.phase.modes, modes) for other in consistent):
+            if consistent and (_onsets(chosen) > 1 or any(sticks_more(x.modes, modes) for x, _ in consistent)):
                 continue
             with suppress(Inconsistent):
-                found = _candidate(mechanism, state, modes, group, probe)
+                found = self._candidate(modes)
                 consistent.extend([] if found is None else [found])
-    least = [
-        one for one in consistent if not any(sticks_more(other.phase.modes, one.phase.modes) for other in consistent)
-    ]
-    names = [mechanism.one_sided[i].name for i in group]
-    if not least:
-        raise Undecided("no-motion", names)
-    first = least[0].solution.accelerations
-    size = _hurry(mechanism, state, least[0].solution)
-    for other in least[1:]:
-        if float(np.abs(other.solution.accelerations - first).max(initial=0.0)) > 1e-6 * size:
+        least = [one for one in consistent if not any(sticks_more(x.modes, one[0].modes) for x, _ in consistent)]
+        names = [self.mechanism.one_sided[i].name for i in self.group]
+        if not least:
+            raise Undecided("no-motion", names)
+        first = least[0][1]
+        apart = [float(np.abs(x.accelerations - first.accelerations).max(initial=0.0)) for _, x in least]
+        if max(apart) > ALIKE * self._hurry(first):
             raise Undecided("several-motions", names)
-    if not least[0].solution.unique:
-        raise Undecided("undetermined-friction", names)
-    best = max(least, key=lambda one: (len(one.phase.closed), len(one.phase.sticking)))
-    return best.phase.modes
+        if not first.unique:
+            raise Undecided("undetermined-friction", names)
+        return max(least, key=lambda one: (len(one[0].closed), len(one[0].sticking)))[0].modes
+
+    def _hurry(self, solution: Solution) -> float:
+        """Return the size of the accelerations of a scene, of those that gravity and its speed could give it, too."""
+        fall, own = (float(np.abs(x).max(initial=0.0)) for x in (self.mechanism.gravity, solution.accelerations))
+        return max(fall, own, self.speed**2, LEAST)
+
+    def _candidate(self, modes: list[Mode]) -> tuple[Phase, Solution] | None:
+        """Return a phase with its accelerations, if they go with the conditions; None if not."""
+        onsets = [i for i in self.group if modes[i].kind is Kind.SLIDE and not modes[i].along]
+        if onsets:
+            directions = _onset(self.mechanism, self.state, modes, onsets)
+            if directions is None:
+                return None
+            for i, direction in directions.items():
+                modes[i] = Mode(Kind.SLIDE, tuple(direction.tolist()))
+        phase = Phase(self.mechanism, modes)
+        solution = phase.solve(self.state)
+        figures = self._figures(phase, solution, None)
+        if any(x < -NEARLY for x in figures.values()):
+            return None
+        doubtful = {key for key, x in figures.items() if x <= NEARLY}
+        return (phase, solution) if self._lasts(phase, solution, doubtful) else None
+
+    def _lasts(self, phase: Phase, solution: Solution, doubtful: set[tuple[str, int]]) -> bool:
+        """Return whether figures without a sign turn out to be at least zero."""
+        fastest = float(np.abs(solution.accelerations).max(initial=0.0))
+        if not self.state.rates.any() and not fastest > NEARLY:
+            # Nothing moves: what is zero stays zero.
+            return True
+        for part in PROBES if doubtful else ():
+            try:
+                then = self.probe(phase, self.state, part / max(self.speed, np.sqrt(fastest)))
+                later = self._figures(phase, phase.solve(then), then)
+            except (Inconsistent, FloatingPointError):
+                return False
+            if any(later[key] < -3 * NEARLY for key in doubtful):
+                return False
+            doubtful = {key for key in doubtful if later[key] <= 3 * NEARLY}
+            if not doubtful:
+                break
+        return True
+
+    def _figures(self, phase: Phase, solution: Solution, then: State | None) -> dict[tuple[str, int], float]:
+        """Return what has to be at least zero, relative to what it is beside: now, or in a later state."""
+        conditions = Conditions(phase, solution, self.group)
+        found = dict(conditions.determined)
+        if conditions.share is not None:
+            found["share", -1] = conditions.share
+        size = self._hurry(solution)
+        opened = [i for i in self.group if phase.modes[i].kind is Kind.OPEN]
+        gaps = [self.mechanism.one_sided[i] for i in opened]
+        if then is not None:
+            speed = max(float(np.abs(then.rates).max(initial=0.0)), LEAST)
+            later, _ = self.mechanism.gap_rates(then)
+            found.update({("gap", i): float(later[i]) for i in opened})
+            found.update({("slip", i): float(phase.along[i] @ x) / speed for i, x in solution.slips.items()})
+            return found
+        gains = self.mechanism.gains_of_gaps(self.state, gaps, solution.accelerations) if gaps else np.zeros(0)
+        found.update({("gap", i): float(x) / size for i, x in zip(opened, gains, strict=True)})
+        begun = [i for i in phase.sliding if i in self.group]
+        rows, _, slips, _ = phase.rows(self.state)
+        for i in begun:
+            if float(np.linalg.norm(rows.rates[slips[i]])) <= NEARLY * self.speed:
+                grows = rows.lines[slips[i]] @ solution.accelerations + rows.gains[slips[i]]
+                found["slip", i] = float(phase.along[i] @ grows) / size
+        return found
 
 
 def _onsets(modes: Sequence[Mode]) -> int:
     return sum(mode.kind is Kind.SLIDE and not mode.along for mode in modes)
 
 
-def _hurry(mechanism: Mechanism, state: State, solution: Solution) -> float:
-    """Return the size of the accelerations of a scene, of those that gravity and its speed could give it, too."""
-    fall, own = (float(np.abs(x).max(initial=0.0)) for x in (mechanism.gravity, solution.accelerations))
-    return max(fall, own, _speed(state) ** 2, 1e-3)
-
-
-def _speed(state: State) -> float:
-    return max(float(np.abs(state.rates).max(initial=0.0)), 1e-3)
-
-
-def _choices(width: int, slip: Floats | None, speed: float) -> tuple[Mode, ...]:
-    if width == 0 or slip is None:
-        return (CLOSED, OPEN)
-    size = float(np.linalg.norm(slip))
-    if size > NEARLY * speed:
-        return (Mode(Kind.SLIDE, tuple((slip / size).tolist())), OPEN)
-    if width == 1:
-        return (STICK, Mode(Kind.SLIDE, (1.0,)), Mode(Kind.SLIDE, (-1.0,)), OPEN)
-    return (STICK, Mode(Kind.SLIDE, ()), OPEN)
-
-
-def _candidate(
-    mechanism: Mechanism, state: State, modes: list[Mode], active: Sequence[int], probe: Probe
-) -> Candidate | None:
-    """Return the states with their accelerations, if they go with the conditions; None if not."""
-    onsets = [i for i in active if modes[i].kind is Kind.SLIDE and not modes[i].along]
-    if onsets:
-        directions = _onset(mechanism, state, modes, onsets)
-        if directions is None:
-            return None
-        for i, direction in directions.items():
-            modes[i] = Mode(Kind.SLIDE, tuple(direction.tolist()))
-    phase = Phase(mechanism, modes)
-    solution = phase.solve(state)
-    figures = _figures(phase, state, active, solution, at_start=True)
-    if any(x < -NEARLY for x in figures.values()):
-        return None
-    doubtful = [key for key, x in figures.items() if x <= NEARLY]
-    if doubtful and not _lasts(phase, state, active, solution, doubtful, probe):
-        return None
-    return Candidate(phase, solution)
-
-
-def _lasts(
-    phase: Phase, state: State, active: Sequence[int], solution: Solution, doubtful: list[tuple[str, int]], probe: Probe
-) -> bool:
-    """Return whether figures without a sign turn out to be at least zero."""
-    if not state.rates.any() and not np.abs(solution.accelerations).max(initial=0.0) > NEARLY:
-        # Nothing moves: what is zero stays zero.
-        return True
-    unit = time_scale(solution, state)
-    left = set(doubtful)
-    for part in PROBES:
-        try:
-            then = probe(phase, state, part * unit)
-            later = _figures(phase, then, active, phase.solve(then), at_start=False)
-        except (Inconsistent, FloatingPointError):
-            return False
-        for key in list(left):
-            x = later[key]
-            if x < -3 * NEARLY:
-                return False
-            if x > 3 * NEARLY:
-                left.discard(key)
-        if not left:
-            return True
-    return True
-
-
-def _figures(
-    phase: Phase, state: State, active: Sequence[int], solution: Solution, *, at_start: bool
-) -> dict[tuple[str, int], float]:
-    """Return what has to be at least zero, relative to what it is beside."""
-    mechanism, every = phase.mechanism, phase.mechanism.one_sided
-    conditions = Conditions(phase, solution, active)
-    found = dict(conditions.determined)
-    if conditions.share is not None:
-        found["share", -1] = conditions.share
-    opened = [i for i in active if phase.modes[i].kind is Kind.OPEN]
-    size = _hurry(mechanism, state, solution)
-    rates = _speed(state)
-    if opened and at_start:
-        gains = mechanism.gains_of_gaps(state, [every[i] for i in opened], solution.accelerations)
-        found.update({("gap", i): float(x) / size for i, x in zip(opened, gains, strict=True)})
-    elif opened:
-        gaps, _ = mechanism.gap_rates(state)
-        found.update({("gap", i): float(gaps[i]) for i in opened})
-    begun = [i for i in phase.sliding if i in active]
-    if begun:
-        rows, _, slips, _ = phase.rows(state)
-        for i in begun:
-            slip, along = rows.rates[slips[i]], phase.along[i]
-            if not at_start:
-                found["slip", i] = float(along @ slip) / rates
-            elif float(np.linalg.norm(slip)) <= NEARLY * rates:
-                grows = rows.lines[slips[i]] @ solution.accelerations + rows.gains[slips[i]]
-                found["slip", i] = float(along @ grows) / size
-    return found
-
-
 def _onset(mechanism: Mechanism, state: State, modes: list[Mode], onsets: list[int]) -> dict[int, Floats] | None:
     """Return directions in which contacts in space begin to slide: those of the slips that follow."""
-    gripping = [STICK if i in onsets else mode for i, mode in enumerate(modes)]
-    held = Phase(mechanism, gripping)
+    held = Phase(mechanism, [STICK if i in onsets else mode for i, mode in enumerate(modes)])
     rows, _, slips, _ = held.rows(state)
-    frames: dict[int, Floats] = {}
-    first = []
-    try:
-        solution = held.solve(state)
-    except Inconsistent:
-        return None
-    for i in onsets:
-        _, _, vt = np.linalg.svd(rows.lines[slips[i]].T)
-        frames[i] = vt[:2]
-        rub = frames[i] @ (solution.forces[solution.sticks[i]] @ solution.frames[i])
-        first.append(np.arctan2(-rub[1], -rub[0]))
+    frames = {i: np.linalg.svd(rows.lines[slips[i]].T)[2][:2] for i in onsets}
 
-    def follow(angles: Floats) -> tuple[list[Floats], list[Floats]]:
+    def follow(angles: Floats) -> tuple[dict[int, Floats], list[Floats]]:
         along = {i: np.array([np.cos(a), np.sin(a)]) @ frames[i] for i, a in zip(onsets, angles, strict=True)}
         changed = [Mode(Kind.SLIDE, tuple(along[i].tolist())) if i in along else mode for i, mode in enumerate(modes)]
         phase = Phase(mechanism, changed)
         found = phase.solve(state)
         rows, _, where, _ = phase.rows(state)
-        grows = [rows.lines[where[i]] @ found.accelerations + rows.gains[where[i]] for i in onsets]
-        return [along[i] for i in onsets], grows
+        return along, [rows.lines[where[i]] @ found.accelerations + rows.gains[where[i]] for i in onsets]
 
     def beside(angles: Floats) -> Floats:
         missed = []
-        for i, along, grows in zip(onsets, *follow(angles), strict=True):
-            a, b = frames[i] @ along, frames[i] @ grows
-            size = float(np.linalg.norm(b)) or 1.0
-            missed.append((a[0] * b[1] - a[1] * b[0]) / size)
+        along, grows = follow(angles)
+        for i, grown in zip(onsets, grows, strict=True):
+            a, b = frames[i] @ along[i], frames[i] @ grown
+            missed.append((a[0] * b[1] - a[1] * b[0]) / (float(np.linalg.norm(b)) or 1.0))
         return np.array(missed)
 
-    try:
-        found = root(beside, np.array(first), tol=1e-13)
-        if np.abs(beside(found.x)).max() > 1e-9:
-            return None
+    with suppress(Inconsistent):
+        solution = held.solve(state)
+        rubs = [frames[i] @ (solution.forces[solution.sticks[i]] @ solution.frames[i]) for i in onsets]
+        found = root(beside, np.array([np.arctan2(-y, -x) for x, y in rubs]), tol=1e-13)
         along, grows = follow(found.x)
-    except Inconsistent:
-        return None
-    if any(float(a @ b) <= 0.0 for a, b in zip(along, grows, strict=True)):
-        return None
-    return dict(zip(onsets, along, strict=True))
+        follows = all(along[i] @ grown > 0.0 for i, grown in zip(onsets, grows, strict=True))
+        return along if follows and np.abs(beside(found.x)).max() <= NEARLY else None
+    return None
