@@ -28,6 +28,7 @@ from core.multibody.start import (
     at_rest,
     energy_of,
     forces_of_start,
+    lost_at_start,
     noticed_of,
     scene_model,
     slack_strings,
@@ -35,7 +36,7 @@ from core.multibody.start import (
 from core.multibody.statics.equilibria import equilibria_of
 from core.multibody.statics.thresholds import RestOf, range_of_rest
 from core.multibody.table.chains import has_chain
-from core.multibody.trajectory.occurrences import ExtremesOf, When, check_search
+from core.multibody.trajectory.occurrences import ExtremesOf, When, check_search, not_taken
 from core.multibody.trajectory.trajectories import DescribedSystem, SceneRequest
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty, check_value
@@ -43,7 +44,7 @@ from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
 from core.systems.solve import check_without_times, checked_times
-from core.systems.trajectory import MotionEvent
+from core.systems.trajectory import MotionEvent, Trajectory
 
 Output = Literal[
     "accelerations",
@@ -138,7 +139,18 @@ def solve_scene(
             for i, output in enumerate(outputs)
             if isinstance(output, RestOf)
         ]
-        return replace(answered_by_parts(scene, request, _checked), thresholds=tuple(ranges) or None)
+        answer = answered_by_parts(scene, request, _checked)
+        return replace(answer, trajectory=_with_notices(answer, request), thresholds=tuple(ranges) or None)
+
+
+def _with_notices(answer: SceneSolution, request: SceneRequest) -> Trajectory | None:
+    """Return the trajectory of an answer, with notices of what was searched for in vain."""
+    motion = answer.trajectory
+    if motion is None or answer.occurrences is None:
+        return motion
+    end = float(np.max(request.times))
+    end = end if answer.ended is None else min(end, answer.ended.time)
+    return replace(motion, warnings=(*motion.warnings, *not_taken(request.outputs, answer.occurrences, end)))
 
 
 def _checked(scene: Scene, request: SceneRequest) -> SceneSolution:
@@ -171,7 +183,7 @@ def _answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descr
     model = scene_model(found, noticed, multipliers.rank)
     system = DescribedSystem(scene, found, [value.value is not None for value in forces], request.outputs)
     trajectory = request.solved(system)
-    events: Sequence[MotionEvent] = () if trajectory is None else trajectory.events
+    events: Sequence[MotionEvent] = lost_at_start(found, forces) if trajectory is None else trajectory.events
     if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(scene, request):
         # Slack strings become taut again: the scene has further phases.
         return answer_in_phases(scene, request)

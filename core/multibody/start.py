@@ -16,6 +16,7 @@ from core.multibody.motion.modes import Modes
 from core.multibody.motion.periods import Periodic
 from core.multibody.motion.vertical_symmetry import Shifted, Steady
 from core.multibody.table.description import Described
+from core.systems.trajectory import MotionEvent
 
 
 class _Named(Protocol):
@@ -167,10 +168,15 @@ def energy_of(found: Described, numbers: NumberKind = DOUBLES) -> Energy:
 
 def slack_strings(found: Modelled, forces: Sequence[ForceAtStart]) -> list[str]:
     """Return the strings that would have to push at the start: the scene begins with them slack."""
+    return [event.name for event in lost_at_start(found, forces) if event.kind == "slack"]
+
+
+def lost_at_start(found: Modelled, forces: Sequence[ForceAtStart]) -> list[MotionEvent]:
+    """Return the events with which the motion ends at the start: what would have to push, or pull, and cannot."""
     return [
-        limit.name
+        MotionEvent(limit.event, limit.name, 0.0, 0.0)
         for limit in found.described.measures.limits
-        if limit.event == "slack" and limit.force is not None and (forces[limit.force].value or ZERO) < 0
+        if limit.force is not None and (forces[limit.force].value or ZERO) < 0
     ]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from core.multibody.answer import Occurrence, SceneExtremes, SceneSolution
 from core.multibody.language.scene import Scene
-from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.multibody.trajectory.occurrences import ExtremesOf, of_search
 from core.multibody.trajectory.trajectories import Output
 
 OF_ALL = {"energy.kinetic", "energy.potential", "momentum", "angular_momentum"}
@@ -50,16 +50,5 @@ def joined_searches(
         if isinstance(search, ExtremesOf):
             extremes.append(ranges[part].pop(0))
         else:
-            occurrences.extend(_next_of(search, times[part]))
+            occurrences.extend(of_search(search, times[part]))
     return tuple(occurrences), tuple(extremes)
-
-
-def _next_of(search: When, found: list[Occurrence]) -> list[Occurrence]:
-    """Take the occurrences of a search from what follows of the answer of a part."""
-    own: list[Occurrence] = []
-    while found and found[0].quantity == search.quantity and found[0].equals == search.equals:
-        expected = len(own) + 1 if search.nth is None else search.nth
-        if found[0].nth != expected or (search.nth is not None and own):
-            break
-        own.append(found.pop(0))
-    return own

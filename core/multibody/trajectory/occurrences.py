@@ -7,13 +7,15 @@ A quantity is a column of the answer, or a component of one: ``rod.angle``, ``ba
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.errors import InvalidParameter, NotApplicable, Path
+from core.multibody.answer import Occurrence
 from core.near_names import did_you_mean
+from core.notices import Notice
 from core.systems.trajectory import Column
 
 ROUNDED = 2.0**-52
@@ -103,3 +105,37 @@ def unknown(search: When | ExtremesOf, index: int, columns: Mapping[str, Column]
         f'name a quantity of the scene, unlike "{search.quantity[:80]}"; there are {", ".join([*columns][:40])}',
         remedy=f"{near} {components}" if near else components,
     )
+
+
+def not_taken(outputs: Sequence[object], occurrences: Sequence[Occurrence], end: float) -> Iterator[Notice]:
+    """Yield a notice for every search whose quantity does not take its value, or not as often as is asked for.
+
+    Parameters
+    ----------
+    outputs : sequence
+        Of the question; the searches among them found the occurrences in their order.
+    end : float
+        Time until which they searched (s).
+    """
+    left = list(occurrences)
+    for index, search in enumerate(outputs):
+        if not isinstance(search, When):
+            continue
+        own = of_search(search, left)
+        if not own:
+            times = "" if search.nth is None or search.nth == 1 else f" {search.nth} times"
+            detail = (
+                f"{search.quantity} does not take the value {search.equals:g}{times} after the start until {end:g} s"
+            )
+            yield Notice("value-not-taken", detail, ("outputs", index, "when"))
+
+
+def of_search(search: When, found: list[Occurrence]) -> list[Occurrence]:
+    """Take the occurrences of a search from what is left of those that several found, one after another."""
+    own: list[Occurrence] = []
+    while found and found[0].quantity == search.quantity and found[0].equals == search.equals:
+        expected = len(own) + 1 if search.nth is None else search.nth
+        if found[0].nth != expected or (search.nth is not None and own):
+            break
+        own.append(found.pop(0))
+    return own

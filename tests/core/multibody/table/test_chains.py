@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -183,6 +184,24 @@ def test_a_chain_too_fast_for_its_peg_leaves_it_at_once():
     assert list(answer.trajectory.time) == [0.0]
     assert any("lifts off at once" in said for said in answer.model.noticed)
     assert force(answer, "c.normal") == pytest.approx(2 * (0.5 * 9.81 - 0.5 * 25), rel=1e-15)
+
+
+@pytest.mark.parametrize("slower", [False, True])
+@pytest.mark.parametrize("light", ["1/3", "1", "20"])
+def test_without_times_too_the_start_is_where_it_lifts_off(light: str, *, slower: bool) -> None:
+    """T = rho v^2 is the speed at which the peg is pressed no more; T does not depend on v."""
+    bodies = {"a": {"mass": light, "at": [0, -1]}, "b": {"mass": 1.5, "at": [0, -2]}}
+    chain = {"kind": "chain", "name": "c", "through": ["a", [0, 0], "b"], "density": 0.8}
+    still = solve_scene(read({"gravity": [0, -9.81], "bodies": bodies, "connections": [chain]}), (), ("forces",))
+    assert still.forces is not None
+    tension = still.forces["c.tension"].value
+    assert tension is not None
+    speed = math.sqrt(tension / 0.8) * (1 - 1e-6 if slower else 1 + 1e-6)
+    moving = {"gravity": [0, -9.81], "bodies": bodies | {"b": bodies["b"] | {"velocity": [0, -speed]}}}
+    answer = solve_scene(read(moving | {"connections": [chain]}), (), ("forces",))
+    events = [(event.kind, event.name, event.time) for event in answer.events]
+    assert events == ([] if slower else [("lift-off", "c", 0.0)])
+    assert (answer.ended is None) == slower
 
 
 def test_a_chain_in_balance_rests_and_its_equilibrium_is_unstable():

@@ -224,3 +224,33 @@ def test_extremes_are_told_to_the_last_places_of_their_times() -> None:
     ball = read({"gravity": [0, -9.81], "bodies": {"b": {"mass": 1, "at": [0, 0], "velocity": [1, "9.81"]}}})
     (found,) = solve_scene(ball, [3.0], [ExtremesOf("b.position.y")]).extremes
     assert abs(found.largest_time - 1.0) <= found.errors["largest_time"] <= 1e-15
+
+
+BALL: dict[str, Any] = {"mass": 1, "at": [5, 1], "velocity": [0, 0]}
+FLOOR = {"kind": "contact", "place": "ball", "on": {"at": [5, 0]}, "restitution": 0.5}
+ALONE: dict[str, Any] = {"gravity": [0, -10], "bodies": {"ball": BALL}}
+VAIN: dict[str, dict[str, Any]] = {
+    "smooth": ALONE,
+    "in phases": ALONE | {"connections": [FLOOR]},
+    "beside a part": ALONE | {"bodies": {"ball": BALL, "other": {"mass": 1, "at": [0, 0]}}, "connections": [FLOOR]},
+}
+
+
+@pytest.mark.parametrize("name", VAIN)
+def test_a_search_in_vain_leaves_a_notice(name: str) -> None:
+    outputs = (
+        When("ball.position.y", 0.75),
+        "trajectory",
+        When("ball.position.y", 2.0),
+        When("ball.position.y", 0.75, nth=7),
+        When("ball.position.y", 0.75, nth=1),
+        When("ball.position.y", 3.0, nth=1),
+    )
+    answer = solve_scene(read(VAIN[name]), [0.3, 0.4], outputs)
+    assert answer.trajectory is not None
+    assert answer.occurrences is not None
+    assert [one.equals for one in answer.occurrences] == [0.75, 0.75]
+    notices = [notice for notice in answer.trajectory.warnings if notice.code == "value-not-taken"]
+    assert [notice.path for notice in notices] == [("outputs", i, "when") for i in (2, 3, 5)]
+    assert "7 times" in notices[1].detail
+    assert "until 0.4 s" in notices[1].detail
