@@ -114,6 +114,8 @@ class Composite:
     about: About = "center-of-mass"
     kind: Literal["composite"] = "composite"
 
+    may_be_round = True
+
     def __post_init__(self) -> None:
         check(self)
         object.__setattr__(self, "parts", tuple(self.parts))

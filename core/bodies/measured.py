@@ -54,6 +54,8 @@ class PrincipalMoments:
     moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
     kind: Literal["principal-moments"] = "principal-moments"
 
+    may_be_round = True
+
     def __post_init__(self) -> None:
         check(self)
         if sum(moment == 0.0 for moment in self.moments) > 1:
@@ -91,6 +93,8 @@ class InertiaTensor:
     mass: Mass | None = None
     center_of_mass: Position | None = None
     kind: Literal["inertia-tensor"] = "inertia-tensor"
+
+    may_be_round = True
 
     def __post_init__(self) -> None:
         check(self)
@@ -172,6 +176,8 @@ class PointMasses:
     positions: Annotated[Any, POSITIONS]
     about: About = "center-of-mass"
     kind: Literal["point-masses"] = "point-masses"
+
+    may_be_round = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", POSITIONS.read(("positions",), self.positions))

@@ -30,6 +30,8 @@ class Ball(Uniform):
     radius: Length
     kind: Literal["ball"] = "ball"
 
+    may_be_round = True
+
     def shape(self) -> Shape:
         """Return 2/5 m r^2 about every axis."""
         r = Fraction(self.radius)
@@ -178,6 +180,8 @@ class SphericalShell(Uniform):
     outer_radius: Length
     inner_radius: LengthOrZero
     kind: Literal["spherical-shell"] = "spherical-shell"
+
+    may_be_round = True
 
     def validate(self) -> None:
         """Raise for an inner radius larger than the outer one."""

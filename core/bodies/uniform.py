@@ -53,6 +53,9 @@ class Uniform:
     mass: SignedMass | None = None
     density: SignedDensity | None = None
 
+    may_be_round = False
+    """Whether it is a ball, or of a kind that says nothing of its surface."""
+
     def __post_init__(self) -> None:
         check(self)
         if (self.mass is None) == (self.density is None):

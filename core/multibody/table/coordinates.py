@@ -32,9 +32,6 @@ from core.multibody.table.spatial_orientation import SpatialOrientation
 from core.multibody.table.table import Row, Table
 from core.near_names import near_and_all
 
-_MAY_BE_BALLS = ("ball", "spherical-shell", "composite", "principal-moments", "inertia-tensor", "point-masses")
-"""Kinds of bodies that are round, or of which nothing says what surface they have."""
-
 
 class Coordinates:
     """The table of the bodies alone, the places on them, and the velocities that the client gave."""
@@ -162,7 +159,7 @@ class Coordinates:
             frame.radius = numerals.number(body.radius, (*path, "radius"))
             if not frame.radius > 0:
                 raise InvalidParameter((*path, "radius"), "be greater than 0 m")
-            if self.dimension == 3 and body.body is not None and body.body.kind not in _MAY_BE_BALLS:
+            if self.dimension == 3 and body.body is not None and not body.body.may_be_round:
                 raise InvalidParameter(
                     (*path, "radius"),
                     f'be left out of a body of kind "{body.body.kind}": what rolls or touches in space by a radius is '
