@@ -30,10 +30,13 @@ class LiftOff(Generic[N]):
         Whether it does, in the motion from the given state.
     time : number or None
         When; null if it does not.
+    error : float or None
+        Bound of the error of the time; left out where every digit is proven.
     """
 
     occurs: bool
     time: Annotated[N, Unit("s")] | None
+    error: Annotated[float, Unit("s")] | None = None
 
 
 @dataclass(frozen=True)

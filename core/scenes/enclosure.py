@@ -14,11 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from collections.abc import Set as AbstractSet
 from fractions import Fraction
 from typing import Any
 
 from flint import acb, arb, fmpq
 
+from core.balls import distance_bound
 from core.errors import Path
 from core.notices import Notice
 
@@ -83,11 +85,30 @@ def as_pair(ball: Ball) -> tuple[float, float]:
     return high, float(ball - arb(high))
 
 
+def _bound(value: Any, rounded: Any) -> Any:
+    """Return a bound of the error of a number that was rounded, or those of several; None where there is none."""
+    if rounded is None:
+        return None
+    if isinstance(value, (tuple, list)):
+        return [_bound(*both) for both in zip(value, rounded, strict=True)]
+    return distance_bound(value, rounded)
+
+
 class Rounding:
-    """Turns balls into doubles and keeps account of what that cost.
+    """Turns balls into doubles with bounds of their errors, and keeps account of what that cost.
+
+    A mapping gets the bounds of the numbers that it holds: as ``error`` that of a single one, as ``errors`` those of
+    several by their names.
+
+    Parameters
+    ----------
+    measured : set of str
+        Keys of numbers that have errors.
 
     Attributes
     ----------
+    errors : dict
+        Bounds of the errors of what was rounded at a path of one name, unless it is a mapping.
     error : float
         Bound of the relative error of every number rounded so far.
     notices : list of Notice
@@ -96,7 +117,9 @@ class Rounding:
         Whether a number could not be told from zero though it may not be zero.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, measured: AbstractSet[str]) -> None:
+        self.measured = measured
+        self.errors: dict[str, Any] = {}
         self.error = 0.0
         self.notices: list[Notice] = []
         self.vague = False
@@ -108,12 +131,21 @@ class Rounding:
 
     def __call__(self, value: Any, path: Path = ()) -> Any:
         """Return `value` with every ball in it, however deep, as a double, or None where a double cannot hold it."""
+        rounded = self._rounded(value, path)
+        if len(path) == 1 and path[0] in self.measured:
+            self.errors[str(path[0])] = _bound(value, rounded)
+        return rounded
+
+    def _rounded(self, value: Any, path: Path) -> Any:
         if isinstance(value, arb):
             return self._number(value, path)
         if isinstance(value, Mapping):
-            return {key: self(entry, (*path, key)) for key, entry in value.items()}
+            rounded = {key: self._rounded(entry, (*path, key)) for key, entry in value.items()}
+            errors = {key: _bound(value[key], rounded[key]) for key in value if key in self.measured}
+            beside = {"error": next(iter(errors.values()))} if len(errors) == 1 else {"errors": errors}
+            return rounded | beside if errors else rounded
         if isinstance(value, (tuple, list)):
-            return [self(entry, (*path, i)) for i, entry in enumerate(value)]
+            return [self._rounded(entry, (*path, i)) for i, entry in enumerate(value)]
         return value
 
     def _number(self, ball: Ball, path: Path) -> float | None:

@@ -20,7 +20,7 @@ from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.notices import Notice
 from core.quantities import Tolerance, Unit, check_value
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding
-from core.scenes.figures import MOTION, SceneExample
+from core.scenes.figures import MOTION, SceneEvent, SceneExample, marks_of, measured_names
 from core.scenes.motion import Event, NamedSceneMotion
 from core.scenes.sampled_motion import sampled
 from core.systems.budget import Budget
@@ -46,6 +46,8 @@ class NamedSceneSolution:
         The smallest model that suffices for the question.
     figures : mapping
         The requested outputs by name: numbers, lists, mappings, None where a double cannot hold the number.
+    errors : mapping
+        Bounds of the errors of those that are numbers or lists of them; mappings hold their own.
     trajectory : Trajectory or None
     ended : str or None
         `HORIZON`, or the event that ended the motion before it; None if nothing ends it or no motion was requested.
@@ -59,6 +61,7 @@ class NamedSceneSolution:
 
     model: Model
     figures: Mapping[str, Any]
+    errors: Mapping[str, float | list[float | None] | None]
     trajectory: Trajectory | None
     ended: str | None
     accuracy: Accuracy
@@ -136,7 +139,7 @@ class NamedScene(ABC):
         """Return the units of the columns."""
         hints = get_type_hints(cls.samples_type, include_extras=True)
         return {
-            name: next(mark.unit for mark in _marks(hint) if isinstance(mark, Unit)) for name, hint in hints.items()
+            name: next(mark.unit for mark in marks_of(hint) if isinstance(mark, Unit)) for name, hint in hints.items()
         }
 
     def trajectory(self, question: MotionQuestion) -> Trajectory:
@@ -236,7 +239,7 @@ class NamedScene(ABC):
         """Return the answer at the present precision, and whether that precision was enough."""
         spend(WORK_OF_A_SCENE)
         horizon = math.inf if question is None else max(0.0, float(np.max(question.times)))
-        rounded = Rounding()
+        rounded = Rounding(measured_names(self.figures_type) | measured_names(SceneEvent))
         found = self.outline(wanted, horizon, lambda time: float(time) <= horizon, rounded)
         trajectory = None
         if found.motion is not None and question is not None and "trajectory" in wanted:
@@ -246,6 +249,7 @@ class NamedScene(ABC):
         answer = NamedSceneSolution(
             model=found.model,
             figures=found.figures,
+            errors=rounded.errors,
             trajectory=trajectory,
             ended=found.ended,
             accuracy=replace(bare, error=max(rounded.error, bare.error)),
@@ -305,9 +309,3 @@ class NamedScene(ABC):
         if "trajectory" in outputs and not timed:
             raise InvalidParameter("times", "be given when a trajectory is requested")
         return outputs
-
-
-def _marks(hint: Any) -> tuple[Any, ...]:
-    """Return the marks of an annotation, at any depth."""
-    inner = tuple(mark for part in getattr(hint, "__args__", ()) for mark in _marks(part))
-    return (*getattr(hint, "__metadata__", ()), *inner)

@@ -13,7 +13,7 @@ from core.balls import precision
 from core.errors import InvalidParameter
 from core.quantities import RADIANS, Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, Unit, check
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
-from core.scenes.figures import MechanicalEnergy, N, Pair, SceneExample, outputs_of
+from core.scenes.figures import Errors, MechanicalEnergy, N, Pair, SceneExample, outputs_of
 from core.scenes.motion import NamedSceneMotion
 from core.scenes.named_scene import NamedScene
 from core.scenes.pendulum import Pendulum
@@ -39,11 +39,14 @@ class Contact(Generic[N]):
         Largest angle from which a rod released at rest stays in contact.
     full_turn_rate : number
         Least rate at the bottom with which the rod goes round a whole cylinder in contact.
+    errors : mapping or None
+        Bounds of the errors; left out where every digit is proven.
     """
 
     kept: bool
     limit_angle: Annotated[N, Unit("rad")] | None
     full_turn_rate: Annotated[N, Unit("rad s^-1")] | None
+    errors: Errors | None = None
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Generic, Literal
 
 from core.quantities import Unit
-from core.scenes.figures import MechanicalEnergy, N, Pair
+from core.scenes.figures import Errors, MechanicalEnergy, N, Pair
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,8 @@ class ShaftPhase(Generic[N]):
         How many, the one that began it included; null for infinitely many.
     dissipated : number
         Energy that its jerks cost.
+    errors : mapping or None
+        Bounds of the errors; left out where every digit is proven.
     """
 
     kind: Literal["taut", "slack", "stick"]
@@ -33,6 +35,7 @@ class ShaftPhase(Generic[N]):
     impulse: Annotated[N, Unit("N s")] | None
     jerks: int | None
     dissipated: Annotated[N, Unit("J")] | None
+    errors: Errors | None = None
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from pydantic import Field, create_model
 
 from core.quantities import Tolerance, members_of
 from core.scenes import Scene
-from core.scenes.figures import SceneEvent
+from core.scenes.figures import Errors, SceneEvent
 from core.scenes.named_scene import NamedScene
 from core.scenes.sampled_motion import ComparableEquation
 from core.systems.budget import Budget
@@ -134,6 +134,10 @@ class SceneAnswerInDoubles(SceneAnswer[float]):
     """The requested outputs of a scene."""
 
     accuracy: Accuracy
+    errors: Errors = Field(
+        description="Bounds of the errors of figures by their names, of pairs one for each entry; null where the "
+        "figure is. Objects have those of their own figures."
+    )
 
 
 def request_of(scene: type[NamedScene]) -> type[Request]:
@@ -165,6 +169,7 @@ def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:
         requested = 0 if times is None else times.size
         samples = None if motion is None else {name: motion[name] for name in ("time", *motion.columns)}
         fields = answer_of(found, accuracy_fields(found.accuracy), found.work, requested, samples)
+        fields = {**fields, "errors": found.errors}
         return fields if motion is None or question.method is None else fields | {"method": motion.method}
 
     return answer

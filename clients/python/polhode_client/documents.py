@@ -1197,6 +1197,7 @@ class UnwindingShaftsAnswer(TypedDict):
     ended: str | None
     events: NotRequired[list[SceneEvent] | None]
     accuracy: Accuracy
+    errors: dict[str, float | list[float | None] | None]
     tension: NotRequired[float | None]
     tension_range: NotRequired[list[float | None] | None]
     accelerations: NotRequired[list[float | None] | None]
@@ -1215,6 +1216,7 @@ class SceneEvent(TypedDict):
 
     kind: str
     time: float | None
+    error: NotRequired[float | None]
 
 
 class MechanicalEnergy(TypedDict):
@@ -1223,6 +1225,7 @@ class MechanicalEnergy(TypedDict):
     kinetic: float | None
     potential: float | None
     total: float | None
+    errors: NotRequired[dict[str, float | list[float | None] | None] | None]
 
 
 class ShaftPhase(TypedDict):
@@ -1234,6 +1237,7 @@ class ShaftPhase(TypedDict):
     impulse: float | None
     jerks: int | None
     dissipated: float | None
+    errors: NotRequired[dict[str, float | list[float | None] | None] | None]
 
 
 class ShaftSamples(TypedDict):
@@ -1308,6 +1312,7 @@ class RodInHoleAnswer(TypedDict):
     ended: str | None
     events: NotRequired[list[SceneEvent] | None]
     accuracy: Accuracy
+    errors: dict[str, float | list[float | None] | None]
     angular_velocity_at_horizontal: NotRequired[float | None]
     equivalent_length: NotRequired[float | None]
     period: NotRequired[float | None]
@@ -1324,6 +1329,7 @@ class Contact(TypedDict):
     kept: bool
     limit_angle: float | None
     full_turn_rate: float | None
+    errors: NotRequired[dict[str, float | list[float | None] | None] | None]
 
 
 class RodSamples(TypedDict):
@@ -1391,6 +1397,7 @@ class ChainOnWedgeAnswer(TypedDict):
     ended: str | None
     events: NotRequired[list[SceneEvent] | None]
     accuracy: Accuracy
+    errors: dict[str, float | list[float | None] | None]
     acceleration: NotRequired[float | None]
     apex_tension: NotRequired[float | None]
     growth_rate: NotRequired[float | None]
@@ -1405,6 +1412,7 @@ class LiftOff(TypedDict):
 
     occurs: bool
     time: float | None
+    error: NotRequired[float | None]
 
 
 class ChainSamples(TypedDict):
@@ -2046,6 +2054,7 @@ class CertifiedSceneEvent(TypedDict):
 
     kind: str
     time: str | None
+    error: NotRequired[float | None]
 
 
 class CertifiedMechanicalEnergy(TypedDict):
@@ -2054,6 +2063,7 @@ class CertifiedMechanicalEnergy(TypedDict):
     kinetic: str | None
     potential: str | None
     total: str | None
+    errors: NotRequired[dict[str, float | list[float | None] | None] | None]
 
 
 class CertifiedShaftPhase(TypedDict):
@@ -2065,6 +2075,7 @@ class CertifiedShaftPhase(TypedDict):
     impulse: str | None
     jerks: int | None
     dissipated: str | None
+    errors: NotRequired[dict[str, float | list[float | None] | None] | None]
 
 
 class CertifiedShaftSamples(TypedDict):
@@ -2142,6 +2153,7 @@ class CertifiedContact(TypedDict):
     kept: bool
     limit_angle: str | None
     full_turn_rate: str | None
+    errors: NotRequired[dict[str, float | list[float | None] | None] | None]
 
 
 class CertifiedRodSamples(TypedDict):
@@ -2210,6 +2222,7 @@ class CertifiedLiftOff(TypedDict):
 
     occurs: bool
     time: str | None
+    error: NotRequired[float | None]
 
 
 class CertifiedChainSamples(TypedDict):

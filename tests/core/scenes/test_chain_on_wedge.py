@@ -108,7 +108,7 @@ def test_the_end_is_found_by_integration_too(masses, slopes, density, part, velo
         function.terminal, function.direction = True, -1  # type: ignore[attr-defined]
     answer = scene.answer(outputs=frozenset({"events", "lift_off"}))
     if grip(0.0, np.array([3.0 * part, velocity])) < -1e-9:
-        assert answer.figures["lift_off"] == {"occurs": True, "time": 0.0}
+        assert answer.figures["lift_off"] == {"occurs": True, "time": 0.0, "error": 0.0}
         return
     assume(abs(grip(0.0, np.array([3.0 * part, velocity]))) > 1e-6)
     solved = solve_ivp(
@@ -287,7 +287,7 @@ def test_a_velocity_far_below_the_first_precision_still_ends_the_motion() -> Non
 def test_a_string_released_with_its_end_at_the_apex_is_over_at_once() -> None:
     scene = ChainOnWedge((1.0, 2.0), (0.5, 0.5), 9.81, 1.0, 0.0, 0.0)
     answer = scene.answer(np.array([0.0, 1.0]))
-    assert answer.figures["events"] == [{"kind": "mass-1-at-apex", "time": 0.0}]
+    assert answer.figures["events"] == [{"kind": "mass-1-at-apex", "time": 0.0, "error": 0.0}]
     assert answer.ended == "mass-1-at-apex"
     assert answer.trajectory is not None
     assert answer.trajectory["position"].tolist() == [0.0]

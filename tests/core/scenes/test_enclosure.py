@@ -87,7 +87,7 @@ def test_never_is_later_than_any_instant() -> None:
 
 
 def test_rounding_keeps_account() -> None:
-    rounding = Rounding()
+    rounding = Rounding(frozenset())
     assert rounding({"a": (exact(0.5), [ZERO, None]), "b": "text"}) == {"a": [0.5, [0.0, None]], "b": "text"}
     assert rounding.error == UNIT_ROUNDOFF
     assert rounding.sharp
@@ -100,7 +100,7 @@ def test_rounding_keeps_account() -> None:
 
 @pytest.mark.parametrize("text", ["1e400", "-1e309", "1e-308", "-1e-400"])
 def test_values_outside_the_normal_doubles_are_left_out_and_reported_with_their_path(text: str) -> None:
-    rounding = Rounding()
+    rounding = Rounding(frozenset())
     assert rounding({"deep": [arb(1), arb(text)]}, ("answer",)) == {"deep": [1.0, None]}
     (notice,) = rounding.notices
     assert notice.code == "outside-double-range"
@@ -108,13 +108,13 @@ def test_values_outside_the_normal_doubles_are_left_out_and_reported_with_their_
 
 
 def test_the_smallest_normal_double_is_accepted() -> None:
-    rounding = Rounding()
+    rounding = Rounding(frozenset())
     assert rounding(exact(SMALLEST_NORMAL)) == 2.0**-1022
     assert not rounding.notices
 
 
 def test_a_zero_in_doubt_is_vague_an_exact_one_is_not() -> None:
-    rounding = Rounding()
+    rounding = Rounding(frozenset())
     assert rounding(ZERO) == 0.0
     assert rounding.sharp
     assert rounding(arb("0 +/- 1e-300")) == 0.0

@@ -63,3 +63,43 @@ def test_an_unsampled_chain_costs_no_samples() -> None:
     chain = ChainOnWedge((1.0, 2.0), (0.5, 0.6), 9.81, 3.0, 0.7, 1.0)
     assert chain.answer().work.samples == 0
     assert chain.answer(np.linspace(0, 100, 11)).work.samples < 11
+
+
+def test_errors_of_figures_bound_the_distance_from_closed_forms() -> None:
+    """At 50 digits: Atwood's machine with a heavy string, the pendulum's quadrature, two unwinding cylinders."""
+    chain = ChainOnWedge((1.0, 1.2), (0.6, 0.8), 9.81, 2.0, 0.5, 0.7).answer()
+    shafts = replace(SHAFTS, wound=(0.5, 0.8)).answer()
+    rod = ROD.answer()
+    with mp.workdps(50):
+        a, b = (mp.mpf(9.81) * mp.sin(mp.mpf(slope)) for slope in (0.6, 0.8))
+        mass = mp.mpf(1.0) + mp.mpf(1.2) + mp.mpf(1.0)
+        x = mp.mpf(0.7)
+        pull = (1 + x / 2) * a - (mp.mpf(1.2) + (2 - x) / 2) * b
+        depth = mp.sqrt(mp.mpf(3)) / 2
+        length = (depth**2 + mp.mpf(1 / 12)) / depth
+        g1, g2 = (mp.mpf(9.81) * mp.sin(mp.mpf(slope)) for slope in (0.6, 0.9))
+        tension = (g1 + g2) / (3 * (mp.mpf(1) / 2 + mp.mpf(1) / 3))
+        exact = [
+            (chain, "acceleration", pull / mass),
+            (chain, "growth_rate", mp.sqrt((a + b) / 2 / mass)),
+            (rod, "equivalent_length", length),
+            (rod, "angular_velocity_at_horizontal", mp.sqrt(mp.mpf(9.81) / length)),
+            (rod, "period", 4 * mp.sqrt(length / mp.mpf(9.81)) * mp.ellipk(mp.mpf(1) / 4)),
+            (shafts, "tension", tension),
+        ]
+        for answer, name, value in exact:
+            distance = abs(mp.mpf(answer.figures[name]) - value)
+            assert distance <= mp.mpf(answer.errors[name]) <= distance + 2.0**-60, name
+
+
+def test_every_figure_that_is_a_number_states_its_error() -> None:
+    answer = replace(SHAFTS, wound=(0.5, 0.8)).answer(np.array([2.0]))
+    objects = {"energy", "phases", "events"}
+    assert set(answer.errors) == set(answer.figures) - objects
+    assert answer.errors["friction_forces"] is None
+    assert np.shape(answer.errors["accelerations"]) == (2,)
+    assert set(answer.figures["energy"]["errors"]) == {"kinetic", "potential", "total"}
+    assert all(set(phase["errors"]) == {"start", "end", "impulse", "dissipated"} for phase in answer.figures["phases"])
+    assert all(event["error"] >= 0.0 for event in answer.figures["events"])
+    lift_off = ChainOnWedge((1.0, 1.2), (0.6, 0.8), 9.81, 2.0, 0.5, 0.7).answer().figures["lift_off"]
+    assert lift_off == {"occurs": False, "time": None, "error": None}

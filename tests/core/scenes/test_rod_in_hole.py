@@ -276,6 +276,7 @@ def test_contact_limits_from_both_sides() -> None:
     assert replace(closed, angle=limit * (1 + 1e-9)).answer().figures["events"][0] == {
         "kind": "end-b-leaves-wall",
         "time": 0.0,
+        "error": 0.0,
     }
 
 
