@@ -154,7 +154,9 @@ def request_of(scene: type[NamedScene]) -> type[Request]:
 
 
 def _system(scene: type[NamedScene], question: Any) -> NamedScene:
-    return scene(**{entry.name: getattr(question, entry.name) for entry in fields(scene)})
+    given = {entry.name: getattr(question, entry.name) for entry in fields(scene)}
+    left_out = {name: value for name, value in scene.exact_defaults.items() if name not in question.model_fields_set}
+    return scene(**given | left_out)
 
 
 def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:

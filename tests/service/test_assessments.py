@@ -764,7 +764,7 @@ def test_without_reveal_a_figure_that_does_not_exist_is_judged_as_one_that_does(
         (STABILITY, "/equilibria/0/eigenvalues", "s^-1", "ball arithmetic", 3),
         (STABILITY, "/equilibria/1/growth_rate", "s^-1", "ball arithmetic", 2),
         (STABILITY, "/equilibria/2/moment", "kg m^2", "ball arithmetic", 1),
-        (ROD, HORIZONTAL, "rad s^-1", "closed form", None),
+        (ROD, HORIZONTAL, "rad s^-1", "bound that the answer states", None),
         (MOTION, "/period", "s", "ball arithmetic", None),
         (MOTION, "/angular_velocity/1", "rad s^-1", "closed form", None),
         (PLANET, "/ellipticity", "1", "ball arithmetic", None),
