@@ -189,7 +189,7 @@ def _answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descr
         return answer_in_phases(scene, request)
     searched = None if trajectory is None else system.searched(trajectory, request.times)
     motions, outputs = found.whole.parts, request.outputs
-    periods = [motion.period for _, motion in motions if motion.name != "rest"]
+    periods = [motion.period for _, motion in motions if motion.moves]
     single = periods[0] if len(periods) == 1 else None
     if single is not None and system.ends_within(float(single)):
         # What would repeat comes to an end, or its strings to another phase, before it does.

@@ -10,11 +10,8 @@ from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.answer import AccelerationErrors, BodyAcceleration, Energy, EnergyErrors, ForceAnswer
 from core.multibody.equations.dynamics import ForceAtStart, Multipliers, kinetic, potential
-from core.multibody.model_answer import PartErrors, PartModel, SceneModel, SmallMotion
+from core.multibody.model_answer import PartErrors, PartModel, SceneModel
 from core.multibody.motion.modelling import Modelled
-from core.multibody.motion.modes import Modes
-from core.multibody.motion.periods import Periodic
-from core.multibody.motion.vertical_symmetry import Shifted, Steady
 from core.multibody.table.description import Described
 from core.systems.trajectory import MotionEvent
 
@@ -51,11 +48,7 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
     table = found.described.measures.table
     apart = []
     for piece, (_, motion) in zip(found.pieces, found.whole.parts, strict=True):
-        modes: tuple[SmallMotion, ...] = ()
-        if isinstance(motion, Modes):
-            modes = tuple(mode.in_doubles() for mode in motion.modes)
         period = motion.period
-        turned = motion if isinstance(motion, (Periodic, Steady, Shifted)) and motion.winding else None
         apart.append(
             PartModel(
                 motion.name,
@@ -63,11 +56,11 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
                 piece.freedom,
                 tuple(piece.table.names),
                 None if period is None else float(period),
-                None if turned is None else turned.winding,
-                modes,
+                motion.winding or None,
+                motion.small_motions,
                 PartErrors(
                     None if period is None else error_in_doubles(period),
-                    None if turned is None else turned.winding_error,
+                    motion.winding_error if motion.winding else None,
                 ),
             )
         )

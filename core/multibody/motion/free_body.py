@@ -20,7 +20,7 @@ from core.errors import AccuracyUnreachable, MechanicsError
 from core.multibody.algebra.directions import cross
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, is_zero
 from core.multibody.equations.packed import pair, two_to
-from core.multibody.motion.motion import States, check_sample_count
+from core.multibody.motion.motion import Motion, States, check_sample_count
 from core.multibody.motion.turning_body import TurningBody
 from core.multibody.table.table import Table
 from core.rotation.exact_start import ExactStart
@@ -37,7 +37,7 @@ Sample = Callable[[Ball], tuple[list[Ball], list[Ball]]]
 
 
 @dataclass(frozen=True)
-class FreeBody:
+class FreeBody(Motion):
     """A body that nothing turns.
 
     Attributes

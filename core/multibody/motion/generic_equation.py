@@ -34,7 +34,6 @@ from core.errors import NotApplicable
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
-from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.whole import Whole
 from core.systems.system import PROJECTION, VECTOR_FIELD, ClosedForm, Model, Range, Structure
 
@@ -309,7 +308,7 @@ class SceneSystem:
         with precision(BITS):
             for indices, motion in self.whole.parts:
                 where = list(indices)
-                if isinstance(motion, Numerical) and any(motion.reach(float(f(times))) for f in (np.min, np.max)):
+                if any(motion.ended(float(f(times))) for f in (np.min, np.max)):
                     raise NotApplicable(
                         "the motion ends at a singular place before the last of the times",
                         path=("times",),

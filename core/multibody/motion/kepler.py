@@ -25,7 +25,7 @@ from core.balls import precision
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import Motion, States
 from core.multibody.table.table import Table
 
 _SMALL = 2.0**-98
@@ -36,7 +36,7 @@ _NODES = 96
 
 
 @dataclass(frozen=True)
-class Kepler:
+class Kepler(Motion):
     """A point about a fixed centre.
 
     Attributes
@@ -89,6 +89,15 @@ class Kepler:
         return bool(is_zero(_dot(rate, rate) * distance * distance - product * product)) and bool(
             all(is_zero(product * x - y * distance * distance) for x, y in zip(place, rate, strict=True))
         )
+
+    def keeps_positive(self, length: Poly) -> bool:
+        """Return that the distance is positive until the point falls into the centre."""
+        return True
+
+    def ended(self, end: float) -> tuple[float, float] | None:
+        """Return the time before `end` at which the point falls into the centre, and its error; None without one."""
+        reached = self.reach(end)
+        return None if reached is None else (reached, 2.0**-52 * abs(reached))
 
     def reach(self, end: float) -> float | None:
         """Return the time before `end` at which the point falls into the centre; None if it does not."""

@@ -25,7 +25,7 @@ from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degr
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
 from core.multibody.model_answer import ModeErrors, SmallMotion
-from core.multibody.motion.motion import States, check_sample_count
+from core.multibody.motion.motion import Motion, States, check_sample_count
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table
 from core.work import spend
@@ -61,7 +61,7 @@ class Mode:
 
 
 @dataclass(frozen=True)
-class Modes:
+class Modes(Motion):
     """A linear part.
 
     Attributes
@@ -126,6 +126,16 @@ class Modes:
             return None
         squares = [acb(x) for x in found[0]]
         return [sign * x.sqrt() for x in squares for sign in (1, -1)] if self._undamped else squares
+
+    @property
+    def small_motions(self) -> tuple[SmallMotion, ...]:
+        """The modes as they are answered."""
+        return tuple(mode.in_doubles() for mode in self.modes)
+
+    @property
+    def is_faster_in_doubles(self) -> bool:
+        """Return that it is."""
+        return True
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
@@ -317,6 +327,10 @@ class Modes:
         count = abs(end) * fastest * 2.0
         check_sample_count(count, MOST_NODES)
         return np.linspace(0.0, end, 33 + int(count))
+
+    def keeps_positive(self, length: Poly) -> bool:
+        """Return whether the amplitudes of the modes show it."""
+        return self.lowest(length) > 0.0
 
     def lowest(self, poly: Poly) -> float:
         """Return what an affine polynomial of the coordinates is never below, minus infinity without a bound."""

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 import numpy as np
 
 from core.arrays import Floats
 from core.errors import BudgetExceeded
-from core.multibody.algebra.polynomials import Ball
+from core.multibody.algebra.polynomials import Ball, Poly
 from core.multibody.equations.packed import pair
+from core.multibody.model_answer import SmallMotion
 from core.multibody.table.table import Table
 
 
@@ -77,17 +78,87 @@ class Motion(Protocol):
     def period(self) -> Ball | None:
         """The period in seconds, where there is one."""
 
+    @property
+    def moves(self) -> bool:
+        """Whether anything moves."""
+        return True
 
-@runtime_checkable
-class EvaluatedInDoubles(Protocol):
-    """A motion that is known faster to a few roundings of doubles: enough to see about when something changes sign."""
+    @property
+    def uniform(self) -> bool:
+        """Whether every acceleration is constant."""
+        return False
+
+    @property
+    def winding(self) -> float:
+        """Angle by which a period turns it about the vertical (rad)."""
+        return 0.0
+
+    @property
+    def winding_error(self) -> float:
+        """Error of that angle (rad)."""
+        return 0.0
+
+    @property
+    def winds_on(self) -> bool:
+        """Whether some coordinates have other values after a period, as angles of what turns over do."""
+        return False
+
+    @property
+    def small_motions(self) -> tuple[SmallMotion, ...]:
+        """The modes of a linear motion."""
+        return ()
+
+    @property
+    def has_finer_run(self) -> bool:
+        """Whether there is a run in pairs of doubles beside the one in doubles."""
+        return False
+
+    @property
+    def lost_to_doubles(self) -> bool:
+        """Whether it is answered by pairs of doubles in any case."""
+        return False
+
+    @property
+    def is_faster_in_doubles(self) -> bool:
+        """Whether a closed form is evaluated faster to a few roundings of doubles."""
+        return False
 
     def in_doubles(self, times: Floats) -> tuple[Floats, Floats] | None:
-        """Return coordinates and rates at times of shape (t,), each of shape (t, n); None where doubles do not do."""
+        """Return coordinates and rates at times of shape (t,), each of shape (t, n); None where doubles do not do.
+
+        They are known to a few roundings: enough to see about when something changes its sign.
+        """
+        return None
+
+    def by(self, kind: str, times: Floats) -> tuple[Floats, Floats]:
+        """Return coordinates and rates in pairs, each of shape (t, n, 2), by one of two computations.
+
+        Parameters
+        ----------
+        kind : {"fine", "check", "reference", "doubles"}
+            A closed form has the first alone; what is known from steps of a period has a coarser one beside it.
+        """
+        found = self.states(times)
+        if kind in ("fine", "reference") or found.reference is None:
+            return found.q, found.v
+        return found.reference
+
+    def places_in_doubles(self, times: Floats) -> Floats:
+        """Return coordinates at times of one sign, shape (t, n), to a few roundings of doubles."""
+        found: Floats = self.states(times).q[..., 0]
+        return found
+
+    def keeps_positive(self, length: Poly) -> bool:
+        """Return whether a length that is positive at the start is so for all time, or its zero is where it ends."""
+        return False
+
+    def ended(self, end: float) -> tuple[float, float] | None:
+        """Return the time before `end` from which on it cannot be followed, and its error (s); None without one."""
+        return None
 
 
 @dataclass(frozen=True)
-class Rest:
+class Rest(Motion):
     """Nothing moves: the start is an equilibrium and there is no velocity."""
 
     table: Table
@@ -95,6 +166,8 @@ class Rest:
     why: str = "nothing moves at the start, and no force is left over"
     how: str = "closed form"
     period: Ball | None = None
+    moves: bool = False
+    uniform: bool = True
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the start at every time."""

@@ -11,7 +11,7 @@ from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.series import DONE, FULL, LOST, advance, placed, sampled
 from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
 from core.multibody.table.table import Table
@@ -67,7 +67,7 @@ class Run:
 
 
 @dataclass
-class Numerical:
+class Numerical(Motion):
     """A part that has no closed form."""
 
     table: Table
@@ -146,7 +146,7 @@ class Numerical:
         up = np.array([two_to(e) for e in self.units.lengths])[None, :, None]
         return q * up, v * up * two_to(-self.units.time)
 
-    def places(self, times: Floats) -> Floats:
+    def places_in_doubles(self, times: Floats) -> Floats:
         """Return coordinates alone, shape (t, n), without a reference: enough to count turns."""
         scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
         run = self.run("fine" if self.lost_to_doubles else "doubles", float(scaled[np.argmax(np.abs(scaled))]))
@@ -167,6 +167,16 @@ class Numerical:
         starts = starts[np.abs(starts) <= abs(end) * (1 + 1e-15)]
         fine = np.interp(np.arange(8 * (len(starts) - 1) + 1) / 8.0, np.arange(len(starts)), starts)
         return fine if run.singular else np.append(fine[np.abs(fine) < abs(end)], end)
+
+    @property
+    def has_finer_run(self) -> bool:
+        """Return that there is one."""
+        return True
+
+    def ended(self, end: float) -> tuple[float, float] | None:
+        """Return the time of a singular place before `end` and its error, None without one; it raises as `reach`."""
+        reached = self.reach(end)
+        return None if reached is None else (reached, SINGULAR_TIME_ERROR * abs(reached))
 
     def reach(self, end: float) -> float | None:
         """Return the time of a singular place before `end`, None without one.

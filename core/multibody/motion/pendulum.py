@@ -19,7 +19,7 @@ from core.balls import Undetermined, precision
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, entry, is_zero
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States, check_sample_count
+from core.multibody.motion.motion import Motion, States, check_sample_count
 from core.multibody.table.table import Table
 from core.scenes.pendulum import Pendulum
 from core.scenes.pendulum_in_balls import pendulum_in_balls
@@ -34,7 +34,7 @@ _MOST_NODES = 40_000
 
 
 @dataclass(frozen=True)
-class PlanePendulum:
+class PlanePendulum(Motion):
     """A part whose two coordinates lie on a circle, with one mass and a constant load.
 
     Attributes

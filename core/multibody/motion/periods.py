@@ -21,7 +21,7 @@ from core.compiled import kernel
 from core.double_double import Pair, dd_add, dd_add_d, dd_mul, dd_mul_d
 from core.multibody.algebra.polynomials import BITS, Ball, is_zero
 from core.multibody.equations.packed import Units, packed, pair, state, two_to, units_of
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.numerical import (
     CHECK_ORDER,
     CHECK_TOLERANCE,
@@ -43,7 +43,7 @@ _PARTS = 4
 
 
 @dataclass
-class Periodic:
+class Periodic(Motion):
     """A part whose motion repeats, up to a turn about the vertical and a shift of what only winds on.
 
     Attributes
@@ -75,6 +75,11 @@ class Periodic:
     def period(self) -> Ball | None:
         """The period in seconds, as wide as two runs differ in it."""
         return (arb(self.length[0], self.uncertainty[0]) + arb(self.length[1])) * arb(2) ** self.units.time
+
+    @property
+    def winds_on(self) -> bool:
+        """Whether a period turns it about the vertical, or moves some coordinates on."""
+        return self.winding != 0.0 or bool(np.any(self.shift))
 
     @property
     def late(self) -> float:

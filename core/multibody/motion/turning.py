@@ -12,7 +12,7 @@ from flint import arb
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States, check_sample_count
+from core.multibody.motion.motion import Motion, States, check_sample_count
 from core.multibody.table.table import Table
 
 _PER_RADIAN = 8
@@ -22,7 +22,7 @@ FEW_RADIANS = 64.0
 
 
 @dataclass(frozen=True)
-class Turning:
+class Turning(Motion):
     """A direction (c, s), and its angle where that is a coordinate, at a constant rate.
 
     Attributes
@@ -62,6 +62,11 @@ class Turning:
             if self.turn is not None:
                 q[k, self.turn], v[k, self.turn] = pair(self.table.q[self.turn] + angle, 0), pair(self.rate, 0)
         return States(q, v, 2.0**-100 * np.abs(q[..., 0]), 2.0**-100 * np.abs(v[..., 0]))
+
+    @property
+    def is_faster_in_doubles(self) -> bool:
+        """Return that it is."""
+        return True
 
     def in_doubles(self, times: Floats) -> tuple[Floats, Floats] | None:
         """Return coordinates and rates in doubles, None after so many radians that sines lose digits."""

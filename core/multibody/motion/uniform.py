@@ -13,12 +13,12 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import Motion, States
 from core.multibody.table.table import Table
 
 
 @dataclass(frozen=True)
-class Uniform:
+class Uniform(Motion):
     """q = q_0 + v_0 t + a t^2/2, evaluated in pairs."""
 
     table: Table
@@ -27,6 +27,7 @@ class Uniform:
     why: str = "the geometry is linear and no force depends on place or velocity"
     how: str = "closed form"
     period: Ball | None = None
+    uniform: bool = True
 
     @cached_property
     def _numbers(self) -> list[Floats]:

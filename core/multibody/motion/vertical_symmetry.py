@@ -17,7 +17,7 @@ from core.arrays import Floats
 from core.double_double import dd_add, dd_sub
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.equations.packed import packed, pair, state, two_to, units_of
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.motion.periods import UNCERTAIN, Periodic
 from core.multibody.motion.returns import RATES, Passage, Section, distance, followed
@@ -25,7 +25,7 @@ from core.multibody.table.table import Table
 
 
 @dataclass(frozen=True)
-class Steady:
+class Steady(Motion):
     """The height stays, and the rest turns about the vertical at a constant rate."""
 
     table: Table
@@ -66,7 +66,7 @@ class Steady:
 
 
 @dataclass(frozen=True)
-class Shifted:
+class Shifted(Motion):
     """A motion about a vertical that does not pass through the origin."""
 
     motion: Periodic | Steady
@@ -101,6 +101,11 @@ class Shifted:
     def winding_error(self) -> float:
         """Error of that angle (rad)."""
         return self.motion.winding_error
+
+    @property
+    def winds_on(self) -> bool:
+        """Whether a period turns it about the vertical."""
+        return self.motion.winds_on
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states of the motion about its own vertical, moved back."""

@@ -16,8 +16,7 @@ from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
-from core.multibody.motion.motion import EvaluatedInDoubles, Motion
-from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.motion import Motion
 from core.multibody.motion.series_pairs import multipliers_pairs
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.table.connection_effects import Force
@@ -129,11 +128,6 @@ class Whole:
         table = self.measures.table
         return independent(row.line(table.q) for row in table.rows)
 
-    @cached_property
-    def _evaluated_in_doubles(self) -> list[tuple[int, EvaluatedInDoubles]]:
-        # Whether a motion has a protocol takes longer to find out than what it then answers.
-        return [(k, motion) for k, (_, motion) in enumerate(self.parts) if isinstance(motion, EvaluatedInDoubles)]
-
     def motion_of(self, coordinates: Sequence[int]) -> Motion | None:
         """Return the motion of the part that these coordinates of the scene follow, None where they stay."""
         return next(iter(self.motions_of(coordinates)), None)
@@ -191,42 +185,31 @@ class Whole:
         shape = (len(times), len(self.reduced.table.names), 2)
         z, w = np.zeros(shape), np.zeros(shape)
         for indices, motion in self.parts:
-            if isinstance(motion, Numerical):
-                z[:, list(indices)], w[:, list(indices)] = motion.by(kind, times)
-            else:
-                found = motion.states(times)
-                first = kind in ("fine", "reference") or found.reference is None
-                own = (found.q, found.v) if first or found.reference is None else found.reference
-                z[:, list(indices)], w[:, list(indices)] = own
+            z[:, list(indices)], w[:, list(indices)] = motion.by(kind, times)
         return z, w
 
     @property
     def is_faster_in_doubles(self) -> bool:
         """Whether a part has a closed form that is evaluated faster in doubles."""
-        return bool(self._evaluated_in_doubles)
+        return any(motion.is_faster_in_doubles for _, motion in self.parts)
 
     def reduced_in_doubles(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
         """Return the states as `reduced_in_pairs`, where that is faster to a few roundings of doubles."""
-        found = {k: motion.in_doubles(times) for k, motion in self._evaluated_in_doubles}
         shape = (len(times), len(self.reduced.table.names), 2)
         z, w = np.zeros(shape), np.zeros(shape)
-        for k, (indices, motion) in enumerate(self.parts):
-            where, fast = list(indices), found.get(k)
+        for indices, motion in self.parts:
+            where, fast = list(indices), motion.in_doubles(times)
             if fast is not None:
                 z[:, where, 0], w[:, where, 0] = fast
-            elif isinstance(motion, Numerical):
-                z[:, where], w[:, where] = motion.by(kind, times)
             else:
-                states = motion.states(times)
-                z[:, where], w[:, where] = states.q, states.v
+                z[:, where], w[:, where] = motion.by(kind, times)
         return z, w
 
     def places(self, times: Floats) -> Floats:
         """Return every coordinate at times of one sign, shape (t, n), to a few roundings of the answer's."""
         z = np.zeros((len(times), len(self.reduced.table.names)))
         for indices, motion in self.parts:
-            own = motion.places(times) if isinstance(motion, Numerical) else motion.states(times).q[..., 0]
-            z[:, list(indices)] = own
+            z[:, list(indices)] = motion.places_in_doubles(times)
         slopes, offsets = self.affine
         found: Floats = offsets[:, 0] + z @ slopes[:, :, 0].T
         return found

@@ -10,7 +10,6 @@ from core.multibody.contacts.contact_states import PhaseTable
 from core.multibody.equations.expansion import Expansion, expansion, slope, value
 from core.multibody.equations.polynomial_roots import first_negative
 from core.multibody.motion.modelling import Modelled
-from core.multibody.motion.uniform import Uniform
 from core.multibody.phases.watches import Watch
 from core.multibody.table.table import Table
 
@@ -40,7 +39,7 @@ class Crossing:
 
 def is_uniform(model: Modelled) -> bool:
     """Return whether nothing but constant accelerations is in a model."""
-    return all(isinstance(motion, Uniform) or motion.name == "rest" for _, motion in model.whole.parts)
+    return all(motion.uniform for _, motion in model.whole.parts)
 
 
 def has_constant_forces(phase: PhaseTable) -> bool:

@@ -26,7 +26,7 @@ from core.multibody.equations.dynamics import accelerations
 from core.multibody.equations.expansion import Expansion, expansion, saddle, slope, value
 from core.multibody.equations.packed import exponent, pair
 from core.multibody.motion.modelling import Modelled, Piece
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.whole import Whole
 from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.reduction.reduction import Reduced
@@ -69,7 +69,7 @@ class Run:
 
 
 @dataclass
-class TurningSlip:
+class TurningSlip(Motion):
     """The motion of a table with friction that turns."""
 
     table: Table

@@ -16,8 +16,6 @@ from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly
 from core.multibody.equations.packed import Packed, Units, two_to
-from core.multibody.motion.periods import Periodic
-from core.multibody.motion.vertical_symmetry import Shifted
 from core.multibody.motion.whole import Whole, spread
 from core.multibody.search.curves import Curve, differentiate
 from core.multibody.search.taylor import ORDER, expand
@@ -233,12 +231,8 @@ def repeats_after(whole: Whole, coordinates: Sequence[int] | None = None) -> flo
     It is a little more than a period, so that what touches zero at the start and so at the end is seen to do so.
     """
     among = [motion for _, motion in whole.parts] if coordinates is None else whole.motions_of(coordinates)
-    moving = [motion for motion in among if motion.name != "rest"]
-    if len(moving) != 1 or moving[0].period is None:
-        return None
-    inner = moving[0].motion if isinstance(moving[0], Shifted) else moving[0]
-    # Each period may turn it about the vertical, or something may only wind on.
-    if isinstance(inner, Periodic) and (inner.winding != 0.0 or bool(np.any(inner.shift))):
+    moving = [motion for motion in among if motion.moves]
+    if len(moving) != 1 or moving[0].period is None or moving[0].winds_on:
         return None
     return _PAST * float(moving[0].period)
 

@@ -72,11 +72,9 @@ def _one(pieces: Pieces) -> Curve:
 def period_within(motions: Sequence[Motion], end: float) -> Ball | None:
     """Return the period (s) after which some motions are the same again, if that is shorter than a time."""
     periods = {
-        None if motion.period is None else float(motion.period): motion.period
-        for motion in motions
-        if motion.name != "rest"
+        None if motion.period is None else float(motion.period): motion.period for motion in motions if motion.moves
     }
-    windings = any(getattr(motion, "winding", 0.0) for motion in motions)
+    windings = any(motion.winding for motion in motions)
     if len(periods) != 1 or windings:
         return None
     ((approximate, period),) = periods.items()

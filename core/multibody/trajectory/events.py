@@ -8,9 +8,7 @@ from math import copysign
 
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, is_zero, substituted, variables
-from core.multibody.motion.kepler import Kepler
-from core.multibody.motion.modes import Modes
-from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
+from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR
 from core.multibody.motion.whole import Whole
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.curves import Curve
@@ -69,15 +67,12 @@ def _singular(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEvent
     """Return the first place at which the motion itself ends."""
     found = None
     for indices, motion in whole.parts:
-        if isinstance(motion, Numerical):
-            reached = motion.reach(end)
-            if reached is not None:
-                found, end = MotionEvent("singular", "", reached, SINGULAR_TIME_ERROR * abs(reached)), reached
-        elif isinstance(motion, Kepler):
-            reached = motion.reach(end)
-            if reached is not None:
-                name = next((limit.name for limit in watched if _follows(whole, limit, indices)), "")
-                found, end = MotionEvent("singular", name, reached, 2.0**-52 * abs(reached)), reached
+        ended = motion.ended(end)
+        if ended is not None:
+            # A closed form ends where a length is zero, a series where connections lose their hold.
+            named = watched if motion.how == "closed form" else []
+            name = next((limit.name for limit in named if _follows(whole, limit, indices)), "")
+            found, end = MotionEvent("singular", name, *ended), ended[0]
     return found
 
 
@@ -85,8 +80,8 @@ def runs_of(whole: Whole) -> list[tuple[Whole, str]]:
     """Return the motion by the run that is answered and by one that is more right, or in closed form."""
     if all(motion.how == "closed form" for _, motion in whole.parts):
         return [(whole, "fine")]
-    numerical = [motion for _, motion in whole.parts if isinstance(motion, Numerical)]
-    kinds = ("fine", "check") if any(motion.lost_to_doubles for motion in numerical) else ("reference", "doubles")
+    in_pairs = any(motion.lost_to_doubles for _, motion in whole.parts)
+    kinds = ("fine", "check") if in_pairs else ("reference", "doubles")
     return [(whole, kind) for kind in kinds]
 
 
@@ -149,17 +144,14 @@ def _require_weight(whole: Whole, watched: Sequence[Limit]) -> None:
 
 
 def _safe(whole: Whole, limit: Limit) -> bool:
-    """Return whether a length stays positive for all time, as the amplitudes of modes show."""
+    """Return whether a length stays positive for all time, as the model of its motion shows."""
     if limit.length is None:
         return False
-    length = substituted(limit.length, whole.reduced.expressions)
     for indices, motion in whole.parts:
-        if isinstance(motion, Kepler) and _follows(whole, limit, indices):
-            # It falls into the centre, which is known, or never.
-            return True
-        if isinstance(motion, Modes) and {key[0] for key in length if key} <= set(indices):
+        if _follows(whole, limit, indices):
             number = {i: k for k, i in enumerate(indices)}
-            return motion.lowest({tuple(number[i] for i in key): x for key, x in length.items()}) > 0.0
+            length = substituted(limit.length, whole.reduced.expressions)
+            return motion.keeps_positive({tuple(number[i] for i in key): x for key, x in length.items()})
     return False
 
 

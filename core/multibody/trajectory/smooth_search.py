@@ -149,7 +149,7 @@ class SmoothSearch:
         """
         motions = [self.whole.parts[k][1] for k in self.whole.parts_of(along.sought.follows)]
         period = period_within(motions, self.end / _PAST)
-        if period is None or any(np.any(getattr(motion, "shift", 0.0)) for motion in motions):
+        if period is None or any(motion.winds_on for motion in motions):
             return None
         values = along.sampler(np.array([0.0, float(period), *(float(period) * PLACES_BETWEEN)])).values
         return period if abs(values[1] - values[0]) <= _WOUND * np.max(np.abs(values)) else None

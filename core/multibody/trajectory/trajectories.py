@@ -13,7 +13,7 @@ from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.language.scene import Scene
 from core.multibody.motion.generic_equation import SceneSystem
 from core.multibody.motion.modelling import Modelled
-from core.multibody.motion.numerical import BEFORE_SINGULAR, Numerical
+from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.table.connection_effects import Limit
 from core.multibody.trajectory.along import Along
@@ -114,7 +114,7 @@ class DescribedSystem:
         self.scene, self.found, self.whole = scene, found, found.whole
         self.determined, self.outputs = determined, outputs
         self.finer = False
-        self.numerical = any(isinstance(motion, Numerical) for _, motion in self.whole.parts)
+        self.numerical = any(motion.has_finer_run for _, motion in self.whole.parts)
         self.closed = all(motion.how == "closed form" for _, motion in self.whole.parts)
 
     def trajectory(self, question: MotionQuestion) -> Trajectory:

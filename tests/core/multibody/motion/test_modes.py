@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from core.errors import BudgetExceeded
-from core.multibody.search import first_zero
+from core.multibody.search import followed
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, read
 
@@ -83,7 +83,7 @@ def test_where_events_cannot_be_excluded_for_so_long_is_refused(monkeypatch: pyt
     length = 1.0 + np.cos(np.outer(times, np.sqrt(squares))) @ shares
     assert np.all(length[:-1] > 0.0)
     assert length[-1] < 0.0
-    monkeypatch.setattr(first_zero, "MOST_PIECES", 20)
+    monkeypatch.setattr(followed, "MOST_PIECES", 20)
     with pytest.raises(BudgetExceeded):
         solve_scene(read(scene), [1e9])
 

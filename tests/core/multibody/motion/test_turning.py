@@ -8,7 +8,7 @@ import mpmath
 import pytest
 
 from core.errors import BudgetExceeded
-from core.multibody.search import first_zero
+from core.multibody.search import followed
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, read
 
@@ -59,7 +59,7 @@ def test_a_slow_approach_of_many_turns_ends_at_the_first_touch() -> None:
 
 def test_more_turns_than_can_be_searched_are_refused_and_not_skipped(monkeypatch: pytest.MonkeyPatch) -> None:
     # Of the pieces that are allowed a few, as all of them take long.
-    monkeypatch.setattr(first_zero, "MOST_PIECES", 2_000)
+    monkeypatch.setattr(followed, "MOST_PIECES", 2_000)
     with pytest.raises(BudgetExceeded, match="pieces of the motion") as refused:
         solve_scene(read(drifting(100_000)), [1e5], ("trajectory",))
     assert refused.value.path == ("times",)
