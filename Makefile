@@ -152,7 +152,7 @@ FUZZ ?= 2000
 # Seconds of load and faults.
 SOAK ?= 300
 
-.PHONY: fuzz fuzz-loop schemathesis soak overload health calibration image dial studies
+.PHONY: fuzz fuzz-loop schemathesis soak scheduling health calibration image dial studies
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
@@ -167,8 +167,8 @@ schemathesis: environment
 soak: environment
 	$(BIN)/python -m benchmarks.soak $(SOAK)
 
-overload: environment
-	$(BIN)/python -m benchmarks.service_overload
+scheduling: environment
+	$(BIN)/python -m benchmarks.scheduling
 
 health: environment
 	$(BIN)/python -m benchmarks.service_health

@@ -256,7 +256,7 @@ def quantiles(waits: list[float]) -> dict[str, float]:
 def main(seconds: float = 300.0) -> None:
     """Run and write the figures; fails if anything was wrong or lost, or memory grew."""
     before = os.getloadavg()
-    with service(max_backlog_seconds="0.5") as server:
+    with service(max_waiting="2") as server:
         until, memory = time.monotonic() + seconds, Memory(server)
         soak = Soak(server, until)
         with ProcessPoolExecutor(len(GROUPS), multiprocessing.get_context("spawn")) as clients:

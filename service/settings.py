@@ -71,7 +71,7 @@ class Settings(BaseSettings):
         default=0,
         ge=0,
         le=256,
-        description="Processes that compute large questions, per server process; 0 takes one per core.",
+        description="Processors that large questions take at most, per server process; 0 takes all.",
     )
     inline_work: int = Field(
         default=2000,
@@ -83,13 +83,22 @@ class Settings(BaseSettings):
         default=8_192, ge=0, description="Request bodies longer than this are read in another process."
     )
     deadline_seconds: float = Field(
-        default=30.0, gt=0, le=LONGEST, description="Longest computation; a longer one is killed (503)."
-    )
-    max_backlog_seconds: float = Field(
-        default=5.0,
+        default=30.0,
         gt=0,
         le=LONGEST,
-        description="Predicted time in the queue above which new large questions are refused (429).",
+        description="Longest computation, not counting the turns of others in between, and longest wait for its first "
+        "turn; beyond, it is ended (503).",
+    )
+    max_waiting: int = Field(
+        default=32,
+        ge=1,
+        description="Large questions of one client that may wait for a compute process; another one is refused (429).",
+    )
+    compute_memory_bytes: int = Field(
+        default=1_000_000_000,
+        ge=0,
+        description="Memory that a compute process may take beyond what it begins with; a question that needs more is "
+        "refused (503). 0 sets no limit.",
     )
     max_held_bytes: int = Field(
         default=256_000_000,

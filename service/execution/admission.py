@@ -1,7 +1,7 @@
 """Answers requests that are too large for the event loop in other processes, which can be killed.
 
-One process reads every such request and predicts its cost. A request that would wait too long is refused at once; the
-others are answered by the compute processes, the clients in rotation.
+No cost is predicted: the compute processes are scheduled by what they use, the clients in turn. A request is refused
+only for what its own client has waiting, or for what all of them hold in memory.
 """
 
 from __future__ import annotations
@@ -9,16 +9,14 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-from collections import defaultdict
 from collections.abc import Awaitable, Callable, Hashable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from service.execution import PRELOAD
-from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
 from service.execution.messages import decoded, encoded
-from service.execution.speed import SpeedCorrection
-from service.execution.worker import Failed, Task, answer, price, serve, terms_of
+from service.execution.worker import Failed, Task, serve, terms_of
 from service.execution.worker_pool import Processes
 from service.http.keys import Key
 from service.http.limits import ClientGone
@@ -29,11 +27,8 @@ from service.responses.json_stream import Document
 from service.routing import PostRoute
 from service.settings import Settings
 
-SECONDS_PER_BYTE = 1e-7
-"""Of reading a request, which is done twice; what it asks for is not known before."""
-
-READER_NICE, COMPUTE_NICE = 5, 10
-"""The reader goes before the computations, so that requests are refused in time where every core computes."""
+COMPUTE_NICE = 10
+"""The server process goes first where both compete for a core."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +55,9 @@ class Compute:
 
     Attributes
     ----------
-    speed : mapping of str to SpeedCorrection
-        By path, by which prices are corrected where times are predicted.
-    reader, processes : Processes
-        The process that reads and prices, and those that answer.
+    size : int
+        Processors that they take at most.
+    processes : Processes
     """
 
     def __init__(self, settings: Settings, metrics: Metrics, table: str) -> None:
@@ -71,26 +65,26 @@ class Compute:
         self.terms = terms_of(settings, table)
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
-        self.reader = Processes(1, serve, (self.terms, price, READER_NICE), PRELOAD, self._lost)
-        self.processes = Processes(self.size, serve, (self.terms, answer, COMPUTE_NICE), PRELOAD, self._lost)
-        self.speed: defaultdict[str, SpeedCorrection] = defaultdict(SpeedCorrection)
+        self.processes = Processes(self.size, serve, (self.terms, COMPUTE_NICE), PRELOAD, self._lost, metrics.moved.inc)
+        metrics.waiting.set_function(lambda: self.processes.waiting)
+        metrics.long.set_function(lambda: self.processes.long)
         self._held = 0
         self._up = self._stopping = False
 
     async def start(self) -> None:
         """Start the processes and return when each is ready."""
-        await asyncio.gather(self.reader.start(), self.processes.start())
+        await self.processes.start()
         self._up = True
 
     async def stop(self) -> None:
         """Refuse and kill what still runs."""
         self._stopping = True
-        await asyncio.gather(self.reader.stop(), self.processes.stop())
+        await self.processes.stop()
 
     @property
     def any_ready(self) -> bool:
         """Whether there are processes that work or wait for work."""
-        return self.reader.any_ready and self.processes.any_ready
+        return self.processes.any_ready
 
     @property
     def held(self) -> int:
@@ -127,43 +121,28 @@ class Compute:
             raise _stopped()
         if not self._up:
             raise Refusal("not-ready", "the compute processes are not up yet", retry_after=1.0)
-        deadline = self._settings.deadline_seconds
-        task = Task(route.path, body, npz, media, deadline)
         with self.holding(len(body)):
-            self._require_turn(self.reader, sender)
-            reading = SECONDS_PER_BYTE * len(body)
-            predicted = await self._done(self.reader, task, reading, sender)
-            # Nothing computes for longer than the deadline, whatever was predicted.
-            seconds = min(reading + predicted, deadline)
-            self._require_turn(self.processes, sender)
-            if sender.key is not None:
-                sender.key.work(seconds)
-            document: Document = await self._done(self.processes, task, seconds, sender)
+            self._require_turn(sender)
+            document: Document = await self._done(Task(route.path, body, npz, media), sender)
             return document
 
-    def _require_turn(self, processes: Processes, sender: Sender) -> None:
+    def _require_turn(self, sender: Sender) -> None:
         most = self._settings.max_held_bytes
         if self._held > most:
             detail = f"requests and unread answers take more than {most} bytes, the limit max_held_bytes"
             raise Refusal("too-busy", detail, retry_after=1.0)
-        limit = self._settings.max_backlog_seconds
-        wait = processes.wait_of(sender.client) - limit
-        if wait > 0.0:
-            detail = f"more than {limit:g} s of work wait already, the limit max_backlog_seconds"
-            raise Refusal("too-busy", detail, retry_after=wait)
+        waiting, limit = self.processes.waiting_of(sender.client), self._settings.max_waiting
+        if len(waiting) >= limit:
+            waited = waiting[0].waited
+            detail = (
+                f"{limit} requests of this client wait, the limit max_waiting, the first of them for {waited:.1f} s"
+            )
+            raise Refusal("too-busy", detail, retry_after=max(1.0, waited))
 
-    async def _done(self, processes: Processes, task: Task, price: float, sender: Sender) -> Any:
+    async def _done(self, task: Task, sender: Sender) -> Any:
         """Return what a process replies, or raise why it does not; time and key are settled however it ends."""
-        limits, computes = self._settings, processes is self.processes
-        speed = self.speed[task.path] if computes else SpeedCorrection()
-        job = processes.submit(
-            encoded(task),
-            sender.client,
-            price * speed.ratio,
-            longest=limits.deadline_seconds,
-            patience=limits.max_backlog_seconds + limits.deadline_seconds,
-        )
-        self._metrics.backlog.set(self.processes.backlog)
+        deadline = self._settings.deadline_seconds
+        job = self.processes.submit(encoded(task), sender.client, longest=deadline, patience=deadline)
         watch = asyncio.ensure_future(sender.gone())
         try:
             await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
@@ -172,17 +151,11 @@ class Compute:
             result = self._result(job)
         finally:
             watch.cancel()
-            finished = job.reply.done() and job.reply.exception() is None
-            processes.drop(job)
-            # A computation that was cut short counts only if it has already taken longer than predicted.
-            if computes and (finished or job.seconds > job.predicted):
-                speed.learn(price, job.seconds)
+            self.processes.drop(job)
             if sender.key is not None:
-                # A price that was taken is replaced by what it came to.
-                sender.key.charge(job.seconds - price if computes else job.seconds)
-            if computes and finished:
-                self._metrics.job_seconds.observe(job.seconds)
-            self._metrics.backlog.set(self.processes.backlog)
+                sender.key.charge(job.seconds)
+            self._metrics.job_seconds.observe(job.seconds)
+            self._metrics.used_seconds.labels("" if sender.key is None else sender.key.name).inc(job.seconds)
         if isinstance(result, Problem):
             raise Refusal.of(result)
         if isinstance(result, Failed):
@@ -202,6 +175,9 @@ class Compute:
         except QueueTimeout:
             detail = "no compute process became free for this request in time; it was not begun"
             raise Refusal("not-ready", detail, retry_after=1.0) from None
+        except Crowded:
+            detail = f"{self.processes.long} long computations have begun already, as many as memory is meant for"
+            raise Refusal("too-busy", detail, retry_after=1.0) from None
         except Stopped:
             raise _stopped() from None
 

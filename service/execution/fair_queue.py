@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict, deque
-from collections.abc import Hashable, Iterator
-from itertools import islice
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Generic, TypeVar
 
 T = TypeVar("T")
@@ -32,9 +31,12 @@ class FairQueue(Generic[T]):
         self._queues.setdefault(client, deque()).appendleft(entry)
         self._queues.move_to_end(client, last=False)
 
-    def pop(self) -> T:
-        """Take the entry whose turn it is."""
-        client, queue = next(iter(self._queues.items()))
+    def pop(self, admitted: Callable[[Hashable], bool]) -> T | None:
+        """Take the entry whose turn it is among those of admitted clients; None if there is none."""
+        client = next(filter(admitted, self._queues), None)
+        if client is None:
+            return None
+        queue = self._queues[client]
         entry = queue.popleft()
         if queue:
             self._queues.move_to_end(client)
@@ -54,8 +56,6 @@ class FairQueue(Generic[T]):
         """Take everything out."""
         self._queues.clear()
 
-    def ahead_of(self, client: Hashable) -> Iterator[T]:
-        """Yield what would be served before a new entry of a client: its own, and as many of each other client."""
-        own = len(self._queues.get(client, ()))
-        for other, queue in self._queues.items():
-            yield from queue if other == client else islice(queue, own + 1)
+    def of(self, client: Hashable) -> Sequence[T]:
+        """Return what waits of a client, the first to be served first."""
+        return self._queues.get(client, ())

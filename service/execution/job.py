@@ -21,6 +21,10 @@ class QueueTimeout(Exception):
     """No process became free for the request in time."""
 
 
+class Crowded(Exception):
+    """So many long computations have begun that there was no room for one more."""
+
+
 class Stopped(Exception):
     """The processes are being stopped."""
 
@@ -32,25 +36,43 @@ class Job:
     ----------
     client : hashable
         Who sent it; clients have their turns in rotation.
-    predicted : float
-        How long it is expected to take (s).
+    longest : float
+        How long it may run (s).
     reply : asyncio.Future of memoryview
-        Fails with `WorkerDied`, `DeadlineExceeded`, `QueueTimeout` or `Stopped`.
+        Fails with `WorkerDied`, `DeadlineExceeded`, `QueueTimeout`, `Crowded` or `Stopped`.
     begun : bool
         Whether a process works on it, or has.
     """
 
-    def __init__(self, request: Sequence[Buffer], client: Hashable, predicted: float, longest: float) -> None:
-        self.request, self.client, self.predicted, self.longest = request, client, predicted, longest
+    def __init__(self, request: Sequence[Buffer], client: Hashable, longest: float) -> None:
+        self.request, self.client, self.longest = request, client, longest
         self.reply: asyncio.Future[memoryview] = asyncio.get_running_loop().create_future()
-        self.since = self.until = 0.0
+        self.submitted = perf_counter()
         self.begun = False
         self.timer: asyncio.TimerHandle | None = None
+        self._ran, self._since = 0.0, 0.0
 
     @property
     def seconds(self) -> float:
-        """How long a process has worked on it, or did (s)."""
-        return (self.until or perf_counter()) - self.since if self.since else 0.0
+        """How long a process has worked on it; the time in which the process was stopped does not count (s)."""
+        return self._ran + (perf_counter() - self._since if self._since else 0.0)
+
+    @property
+    def waited(self) -> float:
+        """How long ago it was submitted (s)."""
+        return perf_counter() - self.submitted
+
+    def run(self) -> None:
+        """Note that a process works on it from now on."""
+        self._since = self._since or perf_counter()
+
+    def rest(self) -> None:
+        """Note that none does for now."""
+        self._ran, self._since = self.seconds, 0.0
+
+    def forget(self) -> None:
+        """Note that none ever did."""
+        self._ran, self._since = 0.0, 0.0
 
     def fail(self, error: Exception) -> None:
         """Answer with an error, unless there is an answer or the client has left."""

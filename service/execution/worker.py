@@ -1,21 +1,23 @@
 """What runs in the processes of a server: one request at a time, from its bytes to the document that is sent.
 
-A request is read and priced by one process, then, when its price is accepted, answered by another. Both read it: a body
-is at most a few megabytes, and what is read is no longer made of bytes.
+Everything about a request is done where it is answered, reading and writing included: no other process has to be free.
 """
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import os
+import resource
 import signal
 import socket
+import sys
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from pkgutil import resolve_name
-from typing import Any, TypeVar
 
 from core.errors import MechanicsError
 from core.systems.budget import Budget
@@ -27,13 +29,11 @@ from service.responses.json_stream import Document, composed
 from service.routing import PostRoute
 from service.settings import Settings
 
-T = TypeVar("T")
-
 SMALL = 65_536
 """Bytes of a text from which on it travels beside the message that it belongs to."""
 
-GRACE = 5.0
-"""Seconds past the deadline after which a process ends by itself, in case that there is no server to kill it."""
+PR_SET_PDEATHSIG = 1
+"""Of prctl(2)."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,14 @@ class Terms:
     ----------
     table : str
         Where the route table is: ``"module:function"``.
+    memory : int
+        Bytes that a process may take beyond what it begins with; 0 for no limit.
     """
 
     table: str
     budget: Budget
     limits: Limits
+    memory: int
 
 
 @dataclass(frozen=True)
@@ -61,15 +64,12 @@ class Task:
         Whether the body is a numpy archive; otherwise it is JSON.
     media : str or None
         Media type of the document, None for JSON.
-    deadline : float
-        Longest time that it may take (s).
     """
 
     path: str
     body: bytes
     npz: bool
     media: str | None
-    deadline: float
 
 
 @dataclass(frozen=True)
@@ -77,10 +77,6 @@ class Failed:
     """A fault of the service, never of the request."""
 
     traceback: str
-
-
-Operation = Callable[[Terms, Task], Any]
-"""What a process does for a request: `price` or `answer`."""
 
 
 @cache
@@ -107,6 +103,7 @@ def terms_of(settings: Settings, table: str) -> Terms:
             audited=settings.audit,
         ),
         Limits(bytes=settings.max_body_bytes),
+        settings.compute_memory_bytes,
     )
 
 
@@ -115,34 +112,27 @@ def _routes(table: str) -> Mapping[str, PostRoute]:
     return {route.path: route for route in resolve_name(table)()}
 
 
-def price(terms: Terms, task: Task) -> float | Problem | Failed:
-    """Return the predicted time of an answer (s), or why there is none."""
-    return _guarded(terms, task, lambda handler, route, question: handler.price(route, question))
-
-
 def answer(terms: Terms, task: Task) -> Document | Problem | Failed:
     """Return the document of an answer, or why there is none."""
-    return _guarded(
-        terms, task, lambda handler, route, question: composed(route, handler.answer(route, question), task.media)
-    )
-
-
-def _guarded(terms: Terms, task: Task, work: Callable[[RequestHandler, PostRoute, Any], T]) -> T | Problem | Failed:
     route, handler = _routes(terms.table)[task.path], handler_of(terms)
     try:
-        return work(handler, route, handler.read(route, task.body, npz=task.npz))
+        question = handler.read(route, task.body, npz=task.npz)
+        # Refuses what exceeds the budget.
+        handler.price(route, question)
+        return composed(route, handler.answer(route, question), task.media)
     except Refusal as refusal:
         return refusal.problem
     except MechanicsError as error:
         return problem_of(error)
     except MemoryError:
-        return Problem(REGISTRY["no-room"], "the machine lacks the memory for this answer", retry_after=1.0)
+        detail = f"this answer needs more memory than the machine has, or than {terms.memory} bytes, the limit "
+        return Problem(REGISTRY["no-room"], detail + "compute_memory_bytes", retry_after=1.0)
     except Exception:
         return Failed(traceback.format_exc())
 
 
-def serve(channel: socket.socket, terms: Terms, work: Operation, nice: int) -> None:
-    """Do the same work for one request after the other until the server process closes the connection.
+def serve(channel: socket.socket, terms: Terms, nice: int) -> None:
+    """Answer one request after the other until the server process closes the connection.
 
     Nothing is sent but `BEGUN` when it is ready, and for each request `BEGUN` and the reply.
     """
@@ -151,16 +141,30 @@ def serve(channel: socket.socket, terms: Terms, work: Operation, nice: int) -> N
     # Where they compete for a core, the server process goes first.
     os.nice(nice)
     handler_of(terms)
+    _end_with_parent()
+    if terms.memory:
+        _limit_memory(terms.memory)
     # The server closes the connection when it stops or gives the process up.
     with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
         channel.sendall(BEGUN)
         while length := requests.read(LENGTH):
             channel.sendall(BEGUN)
             task: Task = decoded(memoryview(requests.read(int.from_bytes(length, "little"))))
-            signal.setitimer(signal.ITIMER_REAL, task.deadline + GRACE)
-            reply = work(terms, task)
+            reply = answer(terms, task)
             if isinstance(reply, Document):
                 reply = Document(reply.numbers, apart(reply.parts, SMALL))
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
             for part in encoded(reply):
                 channel.sendall(part)
+
+
+def _end_with_parent() -> None:
+    """Have this process killed when the fork server ends, which ends with the server: it may be stopped by then."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _limit_memory(most: int) -> None:
+    """Have allocations fail that exceed what is taken now by so many bytes (setrlimit(2))."""
+    if sys.platform == "linux":
+        taken = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_DATA, (taken + most, taken + most))

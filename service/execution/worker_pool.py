@@ -1,42 +1,48 @@
 """Processes that answer one request at a time over a socket of their own, and are killed and replaced one by one.
 
+Nobody foresees how long a request takes, so they are scheduled by what they use (multilevel feedback). Each begins in
+the short class. One that has used its slice of processor time is moved to the long class while it runs: its process is
+stopped and continued there in turn with the others, and another process takes its place in the short class.
+
 They share nothing: a process that dies, at whatever moment, takes with it only the request that it had begun. One that
-does not begin at once (it is stopped, or was dead already) loses the request to another. Starting a process may wait
-for the fork server, so that is done in threads; all else happens in the event loop, without waiting.
+does not begin at once (it is stopped, or was dead already) loses the request to another. All of this happens in the
+event loop, without waiting.
 """
 
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
-import socket
 from collections import deque
 from collections.abc import Callable, Hashable, Sequence
-from functools import partial
-from multiprocessing.connection import wait
-from multiprocessing.context import ForkServerProcess
-from threading import Lock, Thread
+from math import isfinite
 from time import perf_counter
 from typing import Any
 
-from service.execution.daemon_thread import call_soon_if_open, run_in_daemon_thread
 from service.execution.fair_queue import FairQueue
-from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.fair_shares import QUANTUM, FairShares
+from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
 from service.execution.messages import Buffer
+from service.execution.process_starter import ProcessStarter
 from service.execution.worker_process import Process
 from service.observability.logs import LOG
 
 BEGIN_SECONDS = 5.0
 """Time in which a process has to begin what it is given: longer than a sound one waits for a core on a busy machine."""
 
-PAUSE = 0.5
-"""Seconds before another attempt where a process could not be started, or did not live until it was ready."""
+SLICE = 0.02
+"""Seconds of processor time in the short class: most small scenes are answered in less."""
 
-LONGEST_PAUSE = 30.0
-"""What the pause grows to while nothing can be started."""
+SLICES_OF_TIME = 10.0
+"""So many slices of time after which a request is long though it has not used its slice: it waits for something."""
 
-_EXIT_CODES = Lock()
-"""Starting a process polls all others; of two threads that read an exit code at the same time one would find none."""
+RESERVE = 1
+"""Processes beside one for each processor that are ready to take the place of one whose request turns out long."""
+
+MOST_LONG_OF_A_CLIENT = 4
+"""Long requests of one client that have begun: its next request is not begun before one of them ends."""
+
+MOST_LONG = 32
+"""Long requests of all clients together, divided among them: each holds the memory of its process."""
 
 
 class Processes:
@@ -45,29 +51,44 @@ class Processes:
     Parameters
     ----------
     size : int
-        Number of processes.
+        Number of processors that they take at most.
     main : callable
         Runs in each process, given its end of the connection and `arguments`.
     preload : str
         Module that the fork server imports once for all processes.
     lost : callable
         Called with the exit code of a process that died by itself.
+    moved : callable
+        Called when a request is moved to the long class.
+    slice_seconds : float
+        Processor time that a request may use in the short class (s).
+    reserve : int
+        Processes beside one for each processor that are ready at any time.
     """
 
     def __init__(
-        self, size: int, main: Callable[..., None], arguments: Sequence[Any], preload: str, lost: Callable[[int], None]
+        self,
+        size: int,
+        main: Callable[..., None],
+        arguments: Sequence[Any],
+        preload: str,
+        lost: Callable[[int], None],
+        moved: Callable[[], None] = lambda: None,
+        *,
+        slice_seconds: float = SLICE,
+        reserve: int = RESERVE,
     ) -> None:
-        # The fork server has everything imported, so that a process that is lost is replaced within milliseconds;
-        # forking the server process itself, with its threads and its event loop, would not be safe.
-        self._context = multiprocessing.get_context("forkserver")
-        self._context.set_forkserver_preload([preload])
         self.size = size
-        self._main, self._arguments, self._lost = main, tuple(arguments), lost
+        self._starter = ProcessStarter(main, arguments, preload)
+        self._lost, self._moved = lost, moved
+        self._slice, self._kept = slice_seconds, size + reserve
         self._waiting: FairQueue[Job] = FairQueue()
+        self._short: set[Job] = set()
+        self._long: FairShares[Job] = FairShares()
+        self._turns: asyncio.TimerHandle | None = None
         self._idle: deque[Process] = deque()
         self._all: set[Process] = set()
         self._starting: set[asyncio.Task[None]] = set()
-        self._turn = asyncio.Lock()
         self._up = asyncio.Event()
         self._stopping = False
 
@@ -79,12 +100,26 @@ class Processes:
     @property
     def ready(self) -> bool:
         """Whether all processes are there and ready."""
-        return sum(process.ready and not process.killed for process in self._all) == self.size
+        return sum(process.ready and not process.killed for process in self._all) >= self._kept + len(self._long)
 
     @property
     def any_ready(self) -> bool:
         """Whether there is a process that works or waits for work."""
         return any(process.ready and not process.killed for process in self._all)
+
+    @property
+    def waiting(self) -> int:
+        """Number of requests that no process has begun."""
+        return len(self._waiting)
+
+    @property
+    def long(self) -> int:
+        """Number of requests in the long class."""
+        return len(self._long)
+
+    def waiting_of(self, client: Hashable) -> Sequence[Job]:
+        """Return the requests of a client that no process has begun, the first to have its turn first."""
+        return self._waiting.of(client)
 
     def process_of(self, job: Job) -> Process | None:
         """Return the process that works on a request."""
@@ -92,13 +127,10 @@ class Processes:
 
     async def start(self) -> None:
         """Start all processes and return when each is ready."""
-        for _ in range(self.size):
-            self._replace(0.0)
+        self._keep_up()
         await self._up.wait()
 
-    def submit(
-        self, request: Sequence[Buffer], client: Hashable, predicted: float, *, longest: float, patience: float
-    ) -> Job:
+    def submit(self, request: Sequence[Buffer], client: Hashable, *, longest: float, patience: float) -> Job:
         """Have a request answered.
 
         Parameters
@@ -106,14 +138,12 @@ class Processes:
         request : sequence of bytes
             As `messages.encoded` returns it.
         client : hashable
-        predicted : float
-            How long it is expected to take (s).
         longest : float
-            Time after which its process is killed (s).
+            Time for which it may run; its process is then killed (s).
         patience : float
             Time that it may wait for its turn (s).
         """
-        job = Job(request, client, predicted, longest)
+        job = Job(request, client, longest)
         if self._stopping:
             job.fail(Stopped())
             return job
@@ -121,23 +151,6 @@ class Processes:
         self._waiting.append(client, job)
         self._hand_out()
         return job
-
-    def wait_of(self, client: Hashable) -> float:
-        """Return the predicted time until a new request of a client would have its turn (s)."""
-        return self._rest_of_running(sum(job.predicted for job in self._waiting.ahead_of(client)))
-
-    @property
-    def backlog(self) -> float:
-        """Predicted time of all that runs and waits, shared by the processes (s)."""
-        return self._rest_of_running(sum(job.predicted for job in self._waiting))
-
-    def _rest_of_running(self, seconds: float) -> float:
-        for process in self._all:
-            if (job := process.job) is not None:
-                rest = job.predicted - job.seconds
-                # One that takes longer than predicted is expected to take as long again.
-                seconds += rest if rest > 0.0 else max(0.0, min(job.seconds, job.longest - job.seconds))
-        return seconds / self.size
 
     def drop(self, job: Job) -> None:
         """Make sure that nothing works on a request any more."""
@@ -147,6 +160,7 @@ class Processes:
             process.kill()
         else:
             self._waiting.remove(job.client, job)
+        self._hand_out()
 
     def heard(self, process: Process, message: memoryview | None) -> None:
         """Act on a message; None for one of no length."""
@@ -162,12 +176,19 @@ class Processes:
         elif message is None:
             job.begun = True
             self._time(job, job.longest, self._give_up, DeadlineExceeded())
+            if isfinite(self._slice):
+                asyncio.get_running_loop().call_later(self._slice, self._sliced, job)
             return
         else:
             self._detach(job)
             if not job.reply.done():
                 job.reply.set_result(message)
-        self._idle.append(process)
+        if len(self._all) > 2 * self._kept + len(self._long):
+            # Left over from long requests that have ended; some are kept for the next ones.
+            process.kill()
+        else:
+            process.go_on()
+            self._idle.append(process)
         self._hand_out()
 
     def ended(self, process: Process) -> None:
@@ -184,9 +205,10 @@ class Processes:
                 # It was on its way to a process that was dead already: it is not that request's fault.
                 self._put_back(job)
         if not self._stopping:
-            self._replace(0.0 if process.ready else PAUSE)
+            self._keep_up(failed=not process.ready)
             self._hand_out()
-        Thread(target=self._bury, args=(process, asyncio.get_running_loop()), daemon=True).start()
+        quiet = process.killed or self._stopping
+        self._starter.bury(process.handle, (lambda code: None) if quiet else self._lost)
 
     async def stop(self) -> None:
         """Refuse what waits, kill what runs."""
@@ -197,6 +219,8 @@ class Processes:
             if job is not None:
                 job.fail(Stopped())
         self._waiting.clear()
+        if self._turns is not None:
+            self._turns.cancel()
         for process in tuple(self._all):
             process.kill()
         until = perf_counter() + 5.0
@@ -204,11 +228,67 @@ class Processes:
             await asyncio.sleep(0.005)
 
     def _hand_out(self) -> None:
-        while self._waiting and self._idle:
-            job, process = self._waiting.pop(), self._idle.popleft()
-            job.since = perf_counter()
+        """Begin what can be begun in the short class, and divide the other processors among the long requests."""
+        # Where there are several processors, the long class keeps one: a stream of short requests does not end it.
+        most = max(1, self.size - 1) if len(self._long) else self.size
+        while self._idle and len(self._short) < most:
+            job = self._waiting.pop(self._may_begin)
+            if job is None:
+                break
+            process = self._idle.popleft()
+            job.run()
+            self._short.add(job)
             self._time(job, BEGIN_SECONDS, self._not_begun)
             process.give(job)
+        self._share()
+
+    def _may_begin(self, client: Hashable) -> bool:
+        """Return whether one more of a client's requests would find room if it turned out long."""
+        clients = {job.client for job in (*self._long, *self._short)} | {client}
+        return self._long.count(client) < min(MOST_LONG_OF_A_CLIENT, max(1, MOST_LONG // len(clients)))
+
+    def _share(self) -> None:
+        """Stop and continue the processes of the long class, so that no more run than there are processors."""
+        if self._turns is not None:
+            self._turns.cancel()
+            self._turns = None
+        if not len(self._long):
+            return
+        processors = max(self.size - len(self._short), min(1, self.size - 1))
+        working = {process.job: process for process in self._all if process.job is not None}
+        running = {job for job in self._long if not working[job].stopped}
+        chosen = self._long.chosen(processors, running)
+        for job in running.difference(chosen):
+            working[job].stop()
+            job.rest()
+            if job.timer is not None:
+                job.timer.cancel()
+        for job in chosen:
+            if working[job].stopped:
+                working[job].go_on()
+                job.run()
+                self._time(job, job.longest - job.seconds, self._give_up, DeadlineExceeded())
+        if len(chosen) < len(self._long):
+            self._turns = asyncio.get_running_loop().call_later(QUANTUM, self._share)
+
+    def _sliced(self, job: Job) -> None:
+        """Move a request to the long class if it has used its slice."""
+        process = self.process_of(job)
+        if process is None or job not in self._short:
+            return
+        left = self._slice - process.used
+        if left > 0.0 and job.seconds < SLICES_OF_TIME * self._slice:
+            asyncio.get_running_loop().call_later(max(left, 0.1 * self._slice), self._sliced, job)
+            return
+        # Some may have begun before others came to divide the room with.
+        if len(self._long) >= MOST_LONG + self.size:
+            self._give_up(job, Crowded())
+            return
+        self._short.discard(job)
+        self._long.add(job)
+        self._moved()
+        self._keep_up()
+        self._hand_out()
 
     def _time(self, job: Job, seconds: float, late: Callable[..., None], *arguments: Any) -> None:
         if job.timer is not None:
@@ -225,14 +305,16 @@ class Processes:
 
     def _put_back(self, job: Job) -> None:
         if not job.reply.done():
-            job.since = job.until = 0.0
+            job.forget()
             self._time(job, job.longest, self._give_up, QueueTimeout())
             self._waiting.put_back(job.client, job)
             self._hand_out()
 
     def _detach(self, job: Job) -> Process | None:
         """Stop the clocks of a request, and separate it from the process that it was given to, which is returned."""
-        job.until = job.until or perf_counter()
+        job.rest()
+        self._short.discard(job)
+        self._long.remove(job)
         if job.timer is not None:
             job.timer.cancel()
         process = self.process_of(job)
@@ -244,52 +326,20 @@ class Processes:
         job.fail(error)
         self.drop(job)
 
-    def _replace(self, pause: float) -> None:
-        task = asyncio.ensure_future(self._begin(pause))
-        self._starting.add(task)
-        task.add_done_callback(self._starting.discard)
+    def _keep_up(self, *, failed: bool = False) -> None:
+        """Start as many processes as are lacking; after a pause if the last one failed."""
+        lacking = self._kept + len(self._long) - len(self._starting) - sum(not each.killed for each in self._all)
+        for _ in range(lacking):
+            task = asyncio.ensure_future(self._begin(failed))
+            self._starting.add(task)
+            task.add_done_callback(self._starting.discard)
 
-    async def _begin(self, pause: float) -> None:
-        await asyncio.sleep(pause)
-        while True:
-            try:
-                handle, ours = await self._started()
-                break
-            # Whatever is lacking, files or threads or memory: a process that is not replaced would be missed for good.
-            except Exception:
-                LOG.exception("a compute process could not be started")
-                pause = min(max(2.0 * pause, PAUSE), LONGEST_PAUSE)
-                await asyncio.sleep(pause)
+    async def _begin(self, failed: bool) -> None:
+        task = asyncio.current_task()
+        handle, ours = await self._starter.start(failed=failed)
         process = Process(self, handle)
         self._all.add(process)
+        # From now on it counts as one that is there.
+        self._starting.difference_update({task})
         ours.setblocking(False)
         await asyncio.get_running_loop().create_unix_connection(lambda: process, sock=ours)
-
-    async def _started(self) -> tuple[ForkServerProcess, socket.socket]:
-        """Return a new process and our end of the connection to it."""
-        # One at a time: all wait for the same fork server.
-        async with self._turn:
-            ours, theirs = socket.socketpair()
-            try:
-                return await run_in_daemon_thread(partial(self._spawn, theirs)), ours
-            except BaseException:
-                ours.close()
-                raise
-
-    def _spawn(self, end: socket.socket) -> ForkServerProcess:
-        with end, _EXIT_CODES:
-            handle = self._context.Process(target=self._main, args=(end, *self._arguments), daemon=True)
-            handle.start()
-            return handle
-
-    def _bury(self, process: Process, loop: asyncio.AbstractEventLoop) -> None:
-        handle, killed = process.handle, process.killed
-        # The connection may have ended before the process.
-        if not wait([handle.sentinel], 1.0):
-            handle.kill()
-            wait([handle.sentinel])
-        with _EXIT_CODES:
-            code = handle.exitcode or 0
-            handle.close()
-        if not (killed or self._stopping):
-            call_soon_if_open(loop, self._lost, code)

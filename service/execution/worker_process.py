@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import os
 import signal
+import time
 from multiprocessing.context import ForkServerProcess
 from typing import Protocol, cast
 
@@ -36,8 +37,9 @@ class Process(asyncio.BufferedProtocol):
         self._transport: asyncio.WriteTransport | None = None
         self._length = memoryview(bytearray(LENGTH))
         self._target, self._filled = self._length, 0
-        self.ready = self.killed = False
+        self.ready = self.killed = self.stopped = False
         self.job: Job | None = None
+        self._used_before = 0.0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Keep the connection."""
@@ -47,6 +49,7 @@ class Process(asyncio.BufferedProtocol):
         """Send a request."""
         assert self._transport is not None
         self.job = job
+        self._used_before = self._processor_seconds()
         self._transport.writelines(job.request)
 
     def get_buffer(self, sizehint: int) -> memoryview:
@@ -71,10 +74,37 @@ class Process(asyncio.BufferedProtocol):
         """The process has ended."""
         self._listener.ended(self)
 
+    @property
+    def used(self) -> float:
+        """Processor time since it was given its last request (s)."""
+        return self._processor_seconds() - self._used_before
+
+    def _processor_seconds(self) -> float:
+        # The clock of another process (clock_getcpuclockid(3)), which Python has for threads alone.
+        try:
+            return time.clock_gettime(~(self.handle.pid or 0) << 3 | 2)
+        except OSError:
+            # It has ended, or the system has no such clocks.
+            return 0.0
+
+    def stop(self) -> None:
+        """Have it do nothing until it is continued; what it has done is kept."""
+        self.stopped = True
+        self._signal(signal.SIGSTOP)
+
+    def go_on(self) -> None:
+        """Continue what was stopped."""
+        if self.stopped:
+            self.stopped = False
+            self._signal(signal.SIGCONT)
+
     def kill(self) -> None:
         """End it at once, whatever it does."""
         self.killed = True
+        self._signal(signal.SIGKILL)
+
+    def _signal(self, number: signal.Signals) -> None:
         # Its handle learns of its end from the fork server alone, and would take it for dead once that has ended. It
         # lives as long as its connection does.
         with contextlib.suppress(ProcessLookupError):
-            os.kill(self.handle.pid or 0, signal.SIGKILL)
+            os.kill(self.handle.pid or 0, number)

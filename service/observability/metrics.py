@@ -46,7 +46,14 @@ class Metrics:
             "polhode_handed_over", "Requests that were begun in the event loop and given to a compute process.",
             ("operation",), registry=registry,
         )  # fmt: skip
-        self.backlog = Gauge("polhode_backlog_seconds", "Predicted time of the work that waits.", registry=registry)
+        self.waiting = Gauge("polhode_waiting", "Questions that wait for a compute process.", registry=registry)
+        self.long = Gauge("polhode_long", "Long questions that share the compute processes in turn.", registry=registry)
+        self.moved = Counter(
+            "polhode_moved", "Questions that used up their slice and were moved to the long class.", registry=registry
+        )
+        self.used_seconds = Counter(
+            "polhode_used_seconds", "Time of compute processes, by the name of the key.", ("key",), registry=registry
+        )
         self.studies = Gauge("polhode_studies", "Studies that are not finished.", registry=registry)
         self.members_missing = Gauge(
             "polhode_study_members_missing", "Members of unfinished studies that have no result yet.", registry=registry

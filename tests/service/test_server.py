@@ -269,7 +269,9 @@ def test_several_server_processes_give_the_same_bytes_and_shared_counters_and_st
     # A connection may reach a process whose compute processes are still being started.
     assert set(statuses) <= {200, 503}
     assert 200 in statuses
-    until_metrics_have(server, f"polhode_job_seconds_count {statuses.count(200)}.0", "polhode_backlog_seconds 0.0")
+    until_metrics_have(
+        server, f"polhode_job_seconds_count {statuses.count(200)}.0", "polhode_waiting 0.0", "polhode_long 0.0"
+    )
     lines = stopped_cleanly(server, scratch, signal.SIGINT)
     assert sum(line.get("operation") == "rotation_trajectory" for line in lines) == 30 + early
 
@@ -290,9 +292,9 @@ def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_eve
     heavy = json.dumps(hostile.QUESTION | {"times": {"start": 0.0, "stop": 400.0, "count": 11}, "method": steps})
     with ThreadPoolExecutor(4) as threads:
         flying = [threads.submit(post_until_admitted, server, heavy.encode()) for _ in range(4)]
-        # Both wait for the answer to a question by then, and the gauge says so.
+        # Both have a long question by then, and the gauge says so.
         until = time.monotonic() + 60
-        while "polhode_backlog_seconds 0.0" in server.get("/metrics").text:
+        while "polhode_long 0.0" in server.get("/metrics").text:
             assert not all(one.done() for one in flying), [one.result() for one in flying]
             assert time.monotonic() < until
         for process in server_processes(server):
@@ -301,7 +303,7 @@ def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_eve
     assert any(cut)
     while True:
         with suppress(httpx.TransportError):
-            if "polhode_backlog_seconds 0.0" in server.get("/metrics").text:
+            if "polhode_long 0.0" in server.get("/metrics").text:
                 break
         assert time.monotonic() < until + 60
         time.sleep(0.1)

@@ -33,7 +33,7 @@ def test_settings_out_of_range_stop_the_start(monkeypatch: pytest.MonkeyPatch, n
         Settings()
 
 
-@pytest.mark.parametrize("name", ["DEADLINE_SECONDS", "MAX_BACKLOG_SECONDS", "STALLED_SECONDS", "SHUTDOWN_SECONDS"])
+@pytest.mark.parametrize("name", ["DEADLINE_SECONDS", "BODY_SECONDS", "STALLED_SECONDS", "SHUTDOWN_SECONDS"])
 @pytest.mark.parametrize("value", ["inf", "nan", "-1", "1e400", "9" * 30, ""])
 def test_times_are_those_that_a_timer_can_keep(monkeypatch: pytest.MonkeyPatch, name: str, value: str) -> None:
     monkeypatch.setenv(f"POLHODE_{name}", value)

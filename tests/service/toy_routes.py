@@ -61,7 +61,7 @@ class Ask(Request):
     body: ToyBody
     angular_velocity: AngularVelocity
     times: Times
-    behaviour: Literal["well", "nan", "fail", "unreachable", "sleep", "die", "warn", "wrong"] = "well"
+    behaviour: Literal["well", "nan", "fail", "unreachable", "sleep", "die", "warn", "wrong", "fill"] = "well"
 
 
 class Told(Envelope):
@@ -80,6 +80,8 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
         raise SelfCheckFailed("energy", "rod", 1.5, 1e-3, 1e-12)
     if behaviour == "sleep":
         time.sleep(abs(question.angular_velocity[0]))
+    if behaviour == "fill":
+        np.ones(int(question.angular_velocity[0]), np.uint8)
     if behaviour == "die":
         os.kill(os.getpid(), signal.SIGKILL)
     t = sample_times(question.times, budget)
@@ -92,15 +94,12 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
 
 def price(question: Ask, budget: Budget) -> float:
     samples = sample_count(question.times, budget)
-    if question.behaviour in ("sleep", "die"):
-        # Less than no time is slept without being predicted.
-        return max(0.0, question.angular_velocity[0])
     return 1e-8 * samples
 
 
 def is_small(question: Ask) -> bool:
     return (
-        question.behaviour not in ("sleep", "die")
+        question.behaviour not in ("sleep", "die", "fill")
         and (len(question.times) if isinstance(question.times, list) else question.times.count) <= 1000
     )
 

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+from typing import TypeVar
+
 from hypothesis import given
 from hypothesis import strategies as st
 
 from service.execution.fair_queue import FairQueue
 
+T = TypeVar("T")
 
-def drained(queue: FairQueue[int]) -> list[int]:
-    return [queue.pop() for _ in range(len(queue))]
+
+def anybody(client: Hashable) -> bool:
+    return True
+
+
+def drained(queue: FairQueue[T]) -> list[T | None]:
+    return [queue.pop(anybody) for _ in range(len(queue))]
 
 
 def filled(*entries: tuple[str, int]) -> FairQueue[int]:
@@ -26,7 +35,7 @@ def test_one_client_with_many_requests_delays_no_other() -> None:
 
 def test_what_is_put_back_is_next() -> None:
     queue = filled(("a", 1), ("b", 2), ("a", 3))
-    assert queue.pop() == 1
+    assert queue.pop(anybody) == 1
     queue.put_back("a", 1)
     assert drained(queue) == [1, 2, 3]
 
@@ -42,16 +51,13 @@ def test_what_is_taken_out_has_no_turn() -> None:
 clients = st.sampled_from("abcd")
 
 
-@given(st.lists(clients, max_size=20), clients)
-def test_what_is_ahead_of_a_new_entry_is_what_is_served_before_it(others: list[str], client: str) -> None:
-    """But that those who have been served least recently may go before or after it within its round."""
-    queue = filled(*((other, i) for i, other in enumerate(others)))
-    ahead = set(queue.ahead_of(client))
-    queue.append(client, 99)
-    order = drained(queue)
-    before = set(order[: order.index(99)])
-    assert before <= ahead
-    assert len(ahead - before) <= len(set(others) - {client})
+def test_only_admitted_clients_have_turns() -> None:
+    queue = filled(("a", 1), ("b", 2), ("a", 3), ("c", 4))
+    assert queue.pop(lambda client: client != "a") == 2
+    assert queue.pop(lambda client: client == "b") is None
+    assert [*queue.of("a")] == [1, 3]
+    assert not queue.of("b")
+    assert drained(queue) == [1, 4, 3]
 
 
 @given(st.lists(st.tuples(clients, st.integers()), max_size=30))
@@ -61,7 +67,7 @@ def test_nothing_is_lost_and_each_client_is_served_in_order(entries: list[tuple[
     for client, entry in numbered:
         queue.append(client, entry)
     assert sorted(queue) == sorted(entry for _, entry in numbered)
-    order = [queue.pop() for _ in range(len(queue))]
+    order = drained(queue)
     for own in "abcd":
         wanted = [entry for client, entry in numbered if client == own]
         assert [entry for entry in order if entry in wanted] == wanted

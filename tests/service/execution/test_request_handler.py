@@ -68,7 +68,6 @@ class TestRead:
 class TestPrice:
     def test_it_is_the_routes_own(self) -> None:
         asked = answering()
-        assert asked.price(TOY, asked.read(TOY, body(behaviour="die"))) == 0.1
         assert asked.price(TOY, asked.read(TOY, body())) == pytest.approx(3e-8)
 
     def test_what_exceeds_the_budget_has_none(self) -> None:

@@ -11,6 +11,7 @@ import socket
 import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
+from math import inf
 from multiprocessing import forkserver
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
@@ -22,8 +23,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
-from service.execution.worker_pool import Processes
+from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.worker_pool import MOST_LONG_OF_A_CLIENT, Processes
 from service.execution.worker_process import Process
 from tests.service.toy_processes import framed, main
 
@@ -46,7 +47,9 @@ def place(tmp_path: Path) -> Path:
 
 
 def made(place: Path, size: int, lost: list[int]) -> Processes:
-    return Processes(size, main, (str(place),), "tests.service.toy_processes", lost.append)
+    return Processes(
+        size, main, (str(place),), "tests.service.toy_processes", lost.append, slice_seconds=inf, reserve=0
+    )
 
 
 @asynccontextmanager
@@ -61,6 +64,33 @@ async def warm(place: Path, size: int = 1) -> AsyncIterator[tuple[Processes, lis
         await processes.stop()
 
 
+@asynccontextmanager
+async def classes(place: Path) -> AsyncIterator[tuple[Processes, list[bool]]]:
+    """Yield the processes of one processor, and a list that is as long as requests have been moved."""
+    moved: list[bool] = []
+    processes = Processes(
+        1,
+        main,
+        (str(place),),
+        "tests.service.toy_processes",
+        lambda code: None,
+        lambda: moved.append(True),
+        slice_seconds=0.01,
+    )
+    try:
+        async with asyncio.timeout(LONG):
+            await processes.start()
+        yield processes, moved
+    finally:
+        await processes.stop()
+
+
+def stopped(processes: Processes, job: Job) -> bool:
+    """Return whether the process of a request is stopped."""
+    process = processes.process_of(job)
+    return process is not None and process.stopped
+
+
 async def until(holds: Callable[[], Any]) -> None:
     async with asyncio.timeout(LONG):
         while not holds():
@@ -73,9 +103,8 @@ def ask(
     longest: float = LONG,
     patience: float = LONG,
     client: str = "client",
-    predicted: float = 0.0,
 ) -> Job:
-    return processes.submit([framed(request)], client, predicted, longest=longest, patience=patience)
+    return processes.submit([framed(request)], client, longest=longest, patience=patience)
 
 
 def parent_of(pid: int) -> int:
@@ -153,7 +182,7 @@ class TestReady:
     async def test_one_that_dies_before_it_is_ready_is_replaced(
         self, place: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("service.execution.worker_pool.PAUSE", 0.01)
+        monkeypatch.setattr("service.execution.process_starter.PAUSE", 0.01)
         (place / "stillborn").touch()
         async with warm(place, 2) as (processes, lost):
             assert processes.ready
@@ -165,7 +194,7 @@ class TestReady:
         self, place: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """A fault at the start would otherwise take the machine for itself."""
-        monkeypatch.setattr("service.execution.worker_pool.PAUSE", 1e6)
+        monkeypatch.setattr("service.execution.process_starter.PAUSE", 1e6)
         (place / "stillborn").touch()
         lost: list[int] = []
         processes = made(place, 1, lost)
@@ -189,8 +218,8 @@ class TestReady:
                     raise failure
                 return pair()
 
-            monkeypatch.setattr("service.execution.worker_pool.socket.socketpair", lacking)
-            monkeypatch.setattr("service.execution.worker_pool.PAUSE", 0.01)
+            monkeypatch.setattr("service.execution.process_starter.socket.socketpair", lacking)
+            monkeypatch.setattr("service.execution.process_starter.PAUSE", 0.01)
             before = set(processes.pids)
             for pid in before:
                 os.kill(pid, signal.SIGKILL)
@@ -218,10 +247,10 @@ class TestReady:
                     pauses.append(seconds)
                 await sleep(seconds)
 
-            monkeypatch.setattr("service.execution.worker_pool.socket.socketpair", lacking)
-            monkeypatch.setattr("service.execution.worker_pool.PAUSE", 0.0011)
-            monkeypatch.setattr("service.execution.worker_pool.LONGEST_PAUSE", 0.005)
-            monkeypatch.setattr("service.execution.worker_pool.asyncio.sleep", noted)
+            monkeypatch.setattr("service.execution.process_starter.socket.socketpair", lacking)
+            monkeypatch.setattr("service.execution.process_starter.PAUSE", 0.0011)
+            monkeypatch.setattr("service.execution.process_starter.LONGEST_PAUSE", 0.005)
+            monkeypatch.setattr("service.execution.process_starter.asyncio.sleep", noted)
             (before,) = processes.pids
             os.kill(before, signal.SIGKILL)
             await until(lambda: processes.ready and before not in processes.pids)
@@ -310,30 +339,6 @@ class TestQueue:
             for job in jobs:
                 await job.reply
             assert begun(place) == [*"0152634"]
-
-    async def test_the_wait_of_a_client_is_the_work_that_is_served_before(self, place: Path) -> None:
-        async with warm(place, 2) as (processes, _):
-            assert (processes.wait_of("many"), processes.backlog) == (0.0, 0.0)
-            running = [ask(processes, b"wait 0", client="many", predicted=1e6) for _ in range(2)]
-            await until(lambda: all(job.begun for job in running))
-            waiting = [ask(processes, b"echo 1", client="many", predicted=seconds) for seconds in (3e5, 4e5, 5e5)]
-            waiting.append(ask(processes, b"echo 2", client="few", predicted=7e5))
-            found = {client: processes.wait_of(client) for client in ("many", "few", "none")}
-            # Shared by two, but for the moment that has passed.
-            whole = {"many": 2e6 + 12e5 + 7e5, "few": 2e6 + 7e5 + 3e5 + 4e5, "none": 2e6 + 3e5 + 7e5}
-            for client, seconds in whole.items():
-                assert 0.0 <= seconds / 2 - found[client] < 60.0
-            assert 0.0 <= (2e6 + 12e5 + 7e5) / 2 - processes.backlog < 60.0
-            for job in (*running, *waiting):
-                processes.drop(job)
-
-    async def test_what_takes_longer_than_predicted_is_expected_to_take_as_long_again(self, place: Path) -> None:
-        async with warm(place) as (processes, _):
-            job = ask(processes, b"wait 0")
-            await until(lambda: job.begun)
-            before = job.seconds
-            assert before <= processes.wait_of("other") <= job.seconds
-            processes.drop(job)
 
     async def test_one_that_is_dropped_while_it_waits_is_never_begun(self, place: Path) -> None:
         async with warm(place) as (processes, lost):
@@ -430,7 +435,7 @@ class TestLoss:
             def lacking() -> None:
                 raise OSError(24, "Too many open files")
 
-            monkeypatch.setattr("service.execution.worker_pool.socket.socketpair", lacking)
+            monkeypatch.setattr("service.execution.process_starter.socket.socketpair", lacking)
             (pid,) = processes.pids
             kill_unnoticed(pid)
             job, behind = ask(processes, b"echo a", longest=0.05), ask(processes, b"echo b", patience=0.05)
@@ -569,6 +574,106 @@ class TestKilled:
             receive(process, framed(b"a") + framed(b""))
             assert not job.begun
             assert await job.reply == b"b"
+
+
+class TestClasses:
+    """What uses more than its slice goes on in the long class, and nothing starts over."""
+
+    async def test_a_long_request_leaves_its_place_to_short_ones(self, place: Path) -> None:
+        async with classes(place) as (processes, moved):
+            long = ask(processes, b"spin a")
+            await until(lambda: moved)
+            assert (processes.long, long.begun, long.reply.done()) == (1, True, False)
+            for i in range(5):
+                assert await ask(processes, b"echo %d" % i).reply == b"%d" % i
+            assert not long.reply.done()
+            (place / "gate").touch()
+            assert await long.reply == b"a"
+            assert begun(place) == [*"a01234"]
+            assert (processes.long, processes.waiting, len(moved)) == (0, 0, 1)
+
+    async def test_what_waits_without_using_its_slice_is_moved_too(self, place: Path) -> None:
+        async with classes(place) as (processes, moved):
+            idling = ask(processes, b"wait a")
+            await until(lambda: moved)
+            assert await ask(processes, b"echo b").reply == b"b"
+            (place / "gate").touch()
+            assert await idling.reply == b"a"
+
+    async def test_long_requests_have_their_turns_and_only_one_runs_at_a_time(self, place: Path) -> None:
+        async with classes(place) as (processes, _):
+            jobs = [ask(processes, b"spin %d" % i, client="ab"[i % 2]) for i in range(4)]
+            await until(lambda: processes.long == 4)
+            for job in jobs:
+                since = job.seconds
+                await until(lambda job=job, since=since: job.seconds > since)
+            for _ in range(20):
+                assert sum(stopped(processes, job) for job in jobs) == 3
+                await asyncio.sleep(0.01)
+            (place / "gate").touch()
+            assert [await job.reply for job in jobs] == [b"0", b"1", b"2", b"3"]
+            assert begun(place) == [*"0123"]
+
+    async def test_a_client_with_many_long_requests_has_the_next_one_wait(self, place: Path) -> None:
+        async with classes(place) as (processes, moved):
+            jobs = [ask(processes, b"wait %d" % i, client="many") for i in range(MOST_LONG_OF_A_CLIENT + 2)]
+            await until(lambda: len(moved) == MOST_LONG_OF_A_CLIENT)
+            assert await ask(processes, b"echo a", client="other").reply == b"a"
+            assert processes.waiting == 2
+            assert [job.begun for job in jobs[-2:]] == [False, False]
+            assert [*processes.waiting_of("many")] == jobs[-2:]
+            (place / "gate").touch()
+            for job in jobs:
+                await job.reply
+
+    async def test_where_no_more_may_begin_a_long_one_is_refused(
+        self, place: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr("service.execution.worker_pool.MOST_LONG", 1)
+        async with classes(place) as (processes, moved):
+            first = [ask(processes, b"wait %d" % i, client=str(i)) for i in range(2)]
+            await until(lambda: len(moved) == 2)
+            with pytest.raises(Crowded):
+                await ask(processes, b"wait b", client="b").reply
+            assert await ask(processes, b"echo c", client="c").reply == b"c"
+            (place / "gate").touch()
+            assert [await job.reply for job in first] == [b"0", b"1"]
+
+    async def test_the_deadline_counts_the_time_in_which_it_runs(self, place: Path) -> None:
+        async with classes(place) as (processes, moved):
+            jobs = [ask(processes, b"wait %d" % i, longest=0.5) for i in range(2)]
+            await until(lambda: len(moved) == 2)
+            for job in jobs:
+                with pytest.raises(DeadlineExceeded):
+                    await job.reply
+            assert all(job.seconds >= 0.5 for job in jobs)
+            # Both together ran for a second on the one processor.
+            assert max(job.waited for job in jobs) >= 0.9
+            await until(lambda: holds_together(processes))
+
+    async def test_what_is_stopped_can_be_dropped(self, place: Path) -> None:
+        async with classes(place) as (processes, moved):
+            jobs = [ask(processes, b"wait %d" % i) for i in range(2)]
+            await until(lambda: len(moved) == 2 and any(stopped(processes, job) for job in jobs))
+            (dropped,) = (job for job in jobs if stopped(processes, job))
+            process = processes.process_of(dropped)
+            assert process is not None
+            pid = process.handle.pid or 0
+            processes.drop(dropped)
+            await until(lambda: not running(pid))
+            (place / "gate").touch()
+            await next(job for job in jobs if job is not dropped).reply
+            await until(lambda: holds_together(processes))
+
+    async def test_processes_left_over_from_long_requests_are_ended(self, place: Path) -> None:
+        async with classes(place) as (processes, moved):
+            jobs = [ask(processes, b"wait %d" % i, client=str(i)) for i in range(8)]
+            await until(lambda: len(moved) == 8)
+            assert len(processes.pids) >= 9
+            (place / "gate").touch()
+            for job in jobs:
+                await job.reply
+            await until(lambda: len(processes.pids) <= 5 and holds_together(processes))
 
 
 class TestStop:

@@ -30,7 +30,10 @@ def fed(metrics: Metrics) -> Metrics:
         metrics.problem(code)
     metrics.samples.inc(300_000)
     metrics.job_seconds.observe(0.4)
-    metrics.backlog.set(1.25)
+    metrics.waiting.set(3)
+    metrics.long.set(2)
+    metrics.moved.inc()
+    metrics.used_seconds.labels("laboratory").inc(0.4)
     metrics.workers_lost.inc()
     return metrics
 
@@ -49,7 +52,10 @@ EXPECTED = {
     ("polhode_job_seconds_count", ()): 1.0,
     ("polhode_job_seconds_bucket", (("le", "0.5"),)): 1.0,
     ("polhode_job_seconds_bucket", (("le", "0.25"),)): 0.0,
-    ("polhode_backlog_seconds", ()): 1.25,
+    ("polhode_waiting", ()): 3.0,
+    ("polhode_long", ()): 2.0,
+    ("polhode_moved_total", ()): 1.0,
+    ("polhode_used_seconds_total", (("key", "laboratory"),)): 0.4,
     ("polhode_workers_lost_total", ()): 1.0,
 }
 

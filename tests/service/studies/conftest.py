@@ -27,7 +27,7 @@ from service.studies.task import opened
 from tests.service.studies.toy_table import TABLE
 from tests.service.toy_routes import GOOD
 
-TERMS = Terms(TABLE, Budget(), Limits())
+TERMS = Terms(TABLE, Budget(), Limits(), 0)
 
 UNIFORM: dict[str, Any] = {
     "question": {"path": "/v1/toy", "request": GOOD},

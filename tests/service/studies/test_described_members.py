@@ -31,7 +31,7 @@ def test_a_member_has_the_bits_of_the_question_by_itself(name: str) -> None:
         "vary": [{"pointer": f"/bodies/{body}/mass", "values": masses}],
         "quantities": quantities,
     }
-    block = opened(Terms(TABLE, Budget(), Limits()), json.dumps(study).encode()).block(0, 2)
+    block = opened(Terms(TABLE, Budget(), Limits(), 0), json.dumps(study).encode()).block(0, 2)
     route = ROUTES["/v1/scenes"]
     for mass, figures in zip(masses, block.figures, strict=True):
         request["bodies"][body]["mass"] = mass
