@@ -40,14 +40,17 @@ def plane_axes(moving: Sequence[Vector], gravity: Vector) -> list[list[Ball]] | 
 
 
 def vertical_axes(gravity: Vector) -> list[list[Ball]] | None:
-    """Return right-handed axes of which the last is upwards; None where one of the description is."""
-    if _vanishes(gravity):
+    """Return right-handed axes of which the last is upwards; None where that of the description is, or without gravity.
+
+    Motions that are symmetric about the vertical turn about the last axis.
+    """
+    if _vanishes(gravity) or (all(is_zero(x) for x in gravity[:-1]) and gravity[-1] < 0):
         return None
     last = unit([-x for x in gravity], ())
     first = perpendicular(last, ())[0]
     if len(last) == 2:
-        return _oblique([[-x for x in first], last])
-    return _oblique([first, cross(last, first), last])
+        return [[-x for x in first], last]
+    return [first, cross(last, first), last]
 
 
 def line_axes(changes: Sequence[Vector]) -> list[list[Ball]] | None:

@@ -67,6 +67,8 @@ SCENES: dict[str, dict[str, Any]] = {
 }
 Turn = tuple[tuple[str, str, str], ...]
 TURNS: list[Turn] = [
+    (("0", "1", "0"), ("0", "0", "1"), ("1", "0", "0")),
+    (("1", "0", "0"), ("0", "-1", "0"), ("0", "0", "-1")),
     (("0.6", "-0.8", "0"), ("0.8", "0.6", "0"), ("0", "0", "1")),
     (("5/13", "0", "12/13"), ("0", "1", "0"), ("-12/13", "0", "5/13")),
     (("2/3", "-1/3", "2/3"), ("2/3", "2/3", "-1/3"), ("-1/3", "2/3", "2/3")),
@@ -107,6 +109,9 @@ def test_a_scene_turned_in_space_has_the_same_model_period_and_motion(name: str,
     assert first.model.name != "Taylor series"
     if first.period is not None:
         assert first.period == pytest.approx(second.period, rel=1e-14)
+    # The angle of precession counts about the upward vertical.
+    windings = [[part.precession or 0.0 for part in one.model.apart] for one in (first, second)]
+    assert windings[0] == pytest.approx(windings[1], rel=1e-13)
     matrix = np.array([[float(arb(x.split("/")[0]) / arb((x + "/1").split("/")[1])) for x in row] for row in turn])
     here, there = (column(one, "b.position") for one in (first, second))
     apart = np.abs(np.asarray(here.values) @ matrix.T - np.asarray(there.values))
