@@ -22,7 +22,7 @@ from flint import acb, acb_mat, arb, arb_mat, ctx
 from core.balls import precision
 from core.work import spend
 
-_UNITS = 0.02
+_UNITS_OF_A_SPECTRUM = 0.02
 """Units of work (`core.work`), times the cube of the size, for real numbers; complex ones take four times as much."""
 _RIGHT = 40
 """Bits of the vectors that are trusted to be right in doubles."""
@@ -49,7 +49,7 @@ def spectrum(matrix: Any) -> tuple[list[Any], Any] | None:
     except np.linalg.LinAlgError:
         return None
     real = not np.iscomplexobj(found)
-    spend(_UNITS * size**3 * (1 if real else 4))
+    spend(_UNITS_OF_A_SPECTRUM * size**3 * (1 if real else 4))
     matrices = arb_mat if real else acb_mat
     vectors = matrices([[_exactly(x) for x in row] for row in columns.tolist()])
     matrix = matrices(matrix)

@@ -19,7 +19,7 @@ WIDTH = 0.05
 MOST_WINDOWS = 2
 """Windows in which rates are compared, one in a smooth motion: with the start they ask for 15 times at most."""
 
-TOUCHING = 100.0
+WEIGHT_OF_TOUCH = 100.0
 """How much more often a time is chosen in a phase in which something touches than in free flight."""
 
 MOST_ROWS = 200
@@ -74,7 +74,7 @@ def windows(random: Random, answer: SceneSolution, begin: float, end: float, rat
             (
                 max(phase.start, begin),
                 end if phase.end is None else min(phase.end, end),
-                1.0 if set(phase.states.values()) == {"open"} else TOUCHING,
+                1.0 if set(phase.states.values()) == {"open"} else WEIGHT_OF_TOUCH,
             )
             for phase in answer.phases
             if phase.model != "accumulating bounces"

@@ -16,10 +16,10 @@ from core.multibody.audit.newton import Acceleration
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, cross, turned
 from core.multibody.audit.samples import ATTITUDE, POSITION, Samples, axis_of_top
 
-SHORT = 2.0**-15
+SHORT_TIME = 2.0**-15
 """Time by which rates are compared before and after the start, in units of the quickest motion."""
 
-HELD = 1e-7
+ACCELERATION_KNOWN = 1e-7
 """Share of the terms to which an acceleration is known from that: the square of that time, and rounding over it."""
 
 
@@ -96,7 +96,7 @@ class AfterStart:
         self.rate = max(quickness(description, start), sqrt(turning), sqrt(self.steepest / size) if size > 0.0 else 0.0)
         # Without a rate of its own, in the time that it takes to gain its speed, or in any time.
         slow = self.fastest / self.steepest if self.fastest > 0.0 < self.steepest else 1.0
-        self.step = SHORT * (1.0 / self.rate if self.rate > 0.0 else slow)
+        self.step = SHORT_TIME * (1.0 / self.rate if self.rate > 0.0 else slow)
 
     @property
     def gains_as_motion(self) -> Motion:
@@ -126,7 +126,7 @@ class AfterStart:
             terms = self.steepest + self.rate * self.fastest + arm * turning + arm * self.rate**2
             for key, value in own.held.items():
                 gain = (value[first].imag - value[first + 1].imag) / STEP / (2.0 * self.step)
-                off, allowed = np.abs(gain).reshape(1, -1).max(axis=1), (HELD + ledger.rounding) * terms
+                off, allowed = np.abs(gain).reshape(1, -1).max(axis=1), (ACCELERATION_KNOWN + ledger.rounding) * terms
                 law = f"{key} held by the accelerations"
                 ledger.compare(law, connection.name, self.start.times, off, allowed)
 

@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ONE, Ball, is_zero
 
-MOST = 2000
+MOST_SUMS_AT_A_TIME = 2000
 """Sums at a time: eight places of a bar that all stick need some hundred."""
 
 Weights = dict[int, Ball]
@@ -37,7 +37,7 @@ def certificates(slopes: Sequence[Mapping[int, Ball]]) -> list[Weights]:
     Raises
     ------
     BudgetExceeded
-        For more sums than `MOST`.
+        For more sums than `MOST_SUMS_AT_A_TIME`.
     """
     sums: list[tuple[Weights, dict[int, Ball]]] = [
         ({k: ONE}, {f: x for f, x in slope.items() if not is_zero(x)}) for k, slope in enumerate(slopes)
@@ -49,11 +49,11 @@ def certificates(slopes: Sequence[Mapping[int, Ball]]) -> list[Weights]:
         above = [one for one in sums if f in one[1] and one[1][f] > 0]
         below = [one for one in sums if f in one[1] and one[1][f] < 0]
         sums = [one for one in sums if f not in one[1]]
-        if len(sums) + len(above) * len(below) > MOST:
+        if len(sums) + len(above) * len(below) > MOST_SUMS_AT_A_TIME:
             raise BudgetExceeded(
                 "ways in which a load may be shared between contacts",
                 len(sums) + len(above) * len(below),
-                MOST,
+                MOST_SUMS_AT_A_TIME,
                 path=("connections",),
                 remedy="let fewer places stick at once",
             )

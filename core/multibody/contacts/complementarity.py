@@ -52,7 +52,7 @@ def decided(
     Raises
     ------
     BudgetExceeded
-        For more contacts that push one another than `core.multibody.contacts.contact_responses.MOST`.
+        For more contacts that push one another than `core.multibody.contacts.contact_responses.MOST_UNDECIDED`.
     """
     unilateral = along_slip(measures, touching, q, v)
     states = [State.OPEN] * len(unilateral)

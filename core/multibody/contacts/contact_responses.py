@@ -24,7 +24,7 @@ from core.multibody.equations.expansion import saddle_solved
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.table import Row, Table
 
-MOST = 8
+MOST_UNDECIDED = 8
 """Contacts that push one another and are undecided at once."""
 
 NO_DIRECTIONS: Mapping[int, tuple[Ball, Ball]] = MappingProxyType({})
@@ -201,13 +201,13 @@ def _nought(x: Ball) -> Ball:
 
 
 def require_few(unilateral: Sequence[Unilateral], group: Sequence[int], what: str) -> None:
-    """Raise `BudgetExceeded` if more than `MOST` contacts push one another: their states are enumerated."""
-    if len(group) > MOST:
+    """Raise `BudgetExceeded` if more than `MOST_UNDECIDED` contacts push one another: their states are enumerated."""
+    if len(group) > MOST_UNDECIDED:
         names = ", ".join(unilateral[i].name for i in group)
         raise BudgetExceeded(
             f"{what} ({names})",
             len(group),
-            MOST,
+            MOST_UNDECIDED,
             path=("connections",),
             remedy="hold some of them by connections of another kind",
         )

@@ -12,7 +12,7 @@ from core.multibody.contacts.contact_responses import rate_along
 from core.multibody.equations.assembly import least_change
 from core.multibody.table.table import Table
 
-_ROUNDS = 3
+_NEWTON_STEPS_OF_A_STATE = 3
 """Of Newton's method, from a state that is right to a pair of doubles at least."""
 HELD = 2.0**-240
 """Share of the largest coordinate to which a state is put onto its rows."""
@@ -26,14 +26,14 @@ def project(table: Table, around: Sequence[Ball]) -> None:
     """
     held = [row for row in table.rows if row.measure is not None]
     chosen = independent(row.line(around) for row in held)
-    for _ in range(_ROUNDS):
+    for _ in range(_NEWTON_STEPS_OF_A_STATE):
         lines = [held[i].line(table.q) for i in chosen]
         residuals = [arb(evaluated(held[i].measure or {}, table.q).mid()) for i in chosen]
         step = least_change(table, lines, residuals)
         table.q = [arb((q - d).mid()) for q, d in zip(table.q, step, strict=True)]
     chosen = independent(row.line(around) for row in table.rows)
     lines = [row.line(table.q) for row in table.rows]
-    for _ in range(_ROUNDS):
+    for _ in range(_NEWTON_STEPS_OF_A_STATE):
         residuals = [rate_along(lines[i], table.v) - table.rows[i].rate for i in chosen]
         step = least_change(table, [lines[i] for i in chosen], residuals)
         table.v = [arb((v - d).mid()) for v, d in zip(table.v, step, strict=True)]

@@ -30,15 +30,15 @@ _POLISHED = 8
 """Gauss-Newton steps, of which each doubles the digits."""
 _STEEPER = 100.0
 """By how much the margin counts more from one centre to the next."""
-_NEWTON_STEPS = 40
+_NEWTON_STEPS_OF_A_CENTRE = 40
 """Of every centre: a few are needed where the one before was found."""
-_NEAR = 0.05
+_FULL_STEPS_FROM = 0.05
 """Squared Newton decrement from which on full steps converge quadratically (Boyd and Vandenberghe, section 9.6.4)."""
 _SHORTEST = 2.0**-30
 """Of a full step: shorter ones are rounding."""
 _DECREMENT = 1e-4
 """Squared Newton decrement at which a centre is near enough for the next, and for the certificate to be polished."""
-_FARTHEST = 1e4
+_LARGEST_ADDED = 1e4
 """Bound of what is added to the forces, as a share of the largest: squeezed bodies have no best share."""
 
 
@@ -111,17 +111,17 @@ class _Barrier:
     def inside(self, z: Floats) -> bool:
         """Return whether all cones hold with the margin."""
         a, _, rest = self.at(z)
-        return bool(np.all(a > 0.0) and np.all(rest > 0.0) and z[:-1] @ z[:-1] < _FARTHEST**2)
+        return bool(np.all(a > 0.0) and np.all(rest > 0.0) and z[:-1] @ z[:-1] < _LARGEST_ADDED**2)
 
     def centre(self, z: Floats, steepness: float) -> Floats:
         """Return the centre for a steepness, from one near by."""
-        for _ in range(_NEWTON_STEPS):
+        for _ in range(_NEWTON_STEPS_OF_A_CENTRE):
             a, f, rest = self.at(z)
             slopes = 2.0 * (a[:, None] * self.slope_a - np.einsum("kc,kci->ki", f, self.slope_f)) / rest[:, None]
             gradient = -np.sum(slopes, axis=0)
             gradient[-1] -= steepness
             hessian = slopes.T @ slopes - np.einsum("kij,k->ij", self.curved, 1.0 / rest)
-            room = _FARTHEST**2 - float(z[:-1] @ z[:-1])
+            room = _LARGEST_ADDED**2 - float(z[:-1] @ z[:-1])
             away = 2.0 * z[:-1] / room
             gradient[:-1] += away
             hessian[:-1, :-1] += np.outer(away, away) + 2.0 / room * np.eye(len(away))
@@ -130,7 +130,7 @@ class _Barrier:
             if not decrement > _DECREMENT:
                 break
             # A barrier is self-concordant: steps damped so stay inside, but for rounding.
-            length = 1.0 if decrement < _NEAR else 1.0 / (1.0 + decrement**0.5)
+            length = 1.0 if decrement < _FULL_STEPS_FROM else 1.0 / (1.0 + decrement**0.5)
             while not self.inside(z + length * step) and length > _SHORTEST:
                 length *= 0.5
             if length <= _SHORTEST:

@@ -23,12 +23,12 @@ Direction = tuple[Ball, Ball]
 AHEAD: Direction = (ONE, ZERO)
 """The direction of the slip itself, in axes along it."""
 
-_SAMPLES = 48
+_DIRECTIONS_TRIED = 48
 """Directions that are tried, evenly around."""
 _MOST_CUTS = 100
 """Cuts between two samples: digits grow by a factor of 1.44 with each of them, so that some dozen reach 320 bits."""
 
-_GUARD = 40
+_GUARD_OF_AN_ANGLE = 40
 """Bits to which the angle found is not trusted."""
 
 
@@ -91,7 +91,7 @@ def directions(after: Callable[[Direction], Direction | None]) -> list[Direction
     if ahead is not None and is_zero(ahead[1]) and (is_zero(ahead[0]) or ahead[0] > 0):
         return [AHEAD]
     # What is ahead but for rounding is between two samples.
-    angles = [2 * pi * (k - 0.5) / _SAMPLES for k in range(_SAMPLES + 1)]
+    angles = [2 * pi * (k - 0.5) / _DIRECTIONS_TRIED for k in range(_DIRECTIONS_TRIED + 1)]
     values = [off((arb(cos(angle)), arb(sin(angle)))) for angle in angles]
     found = []
     for (a, left), (b, right) in zip(
@@ -126,11 +126,11 @@ def _between(
             before = before / 2
         else:
             first, before = second, last
-        near = abs(following - second) < 2.0 ** (_GUARD - ctx.prec)
+        near = abs(following - second) < 2.0 ** (_GUARD_OF_AN_ANGLE - ctx.prec)
         second, last = following, value
         if near or is_zero(value):
             break
-    return _at(arb(second.mid(), 2.0 ** (_GUARD - ctx.prec)))
+    return _at(arb(second.mid(), 2.0 ** (_GUARD_OF_AN_ANGLE - ctx.prec)))
 
 
 def _at(angle: Ball) -> Direction:

@@ -17,7 +17,7 @@ from core.multibody.table.table import Row, Table
 CLOSE_RATE = 1e-9
 """Relative mismatch of rates up to which rounded figures are taken to be meant as the connections say."""
 
-_NEWTON_ROUNDS = 40
+_NEWTON_STEPS_OF_POSITIONS = 40
 """Newton steps of the positions: quadratic convergence takes three from a mismatch of 1e-6. The others are for
 singular places, where every step halves what is left."""
 
@@ -72,7 +72,7 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
     rows = [row for row in table.rows if row.measure is not None]
     extents = _extents(table)
     sizes = [size(row.measure or {}, extents) for row in rows]
-    for _ in range(_NEWTON_ROUNDS):
+    for _ in range(_NEWTON_STEPS_OF_POSITIONS):
         table.q = [q.mid() for q in table.q]
         lines = [row.line(table.q) for row in rows]
         residuals = [evaluated(row.measure or {}, table.q) for row in rows]

@@ -13,7 +13,7 @@ _HALVINGS = 60
 """Halvings of an interval, after which Newton's method has the last digits of a double right from its start."""
 _SHARP = 2.0**-290
 """Share of a root by which it may be wrong that was begun in doubles."""
-_ROUNDS = 12
+_NEWTON_STEPS_OF_A_ROOT = 12
 """Of Newton's method: digits double in each, from those of a double to beyond those of balls."""
 
 
@@ -119,7 +119,7 @@ def _in_doubles(p: Sequence[Ball], low: float, high: float) -> float | None:
 def sharpened(p: Sequence[Ball], root: Ball) -> Ball:
     """Return a root as a ball, by Newton's method from a start that is near enough."""
     derivative = slope(p)
-    for _ in range(_ROUNDS):
+    for _ in range(_NEWTON_STEPS_OF_A_ROOT):
         step = value(p, root) / value(derivative, root)
         if is_zero(step) or not step.is_finite():
             break

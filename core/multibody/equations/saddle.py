@@ -19,7 +19,7 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered, invert_pairs
 from core.multibody.equations.packed import Packed
 
-SMALL = 2.0**-10
+SUMMED_BELOW = 2.0**-10
 """Largest sum of a row of R for which the series is summed; it then takes at most six terms."""
 
 FAILED, DIRECT, CORRECTED = 0, 1, 2
@@ -170,7 +170,7 @@ def inverted_pairs(table: Packed, lines: Floats, space: Saddle) -> int:
             for i in range(size):
                 largest = max(largest, abs(rest[j, i]))
         largest *= size
-    if not largest < SMALL:
+    if not largest < SUMMED_BELOW:
         if not invert_pairs(a, space.full):
             return FAILED
         for i in range(size):

@@ -19,7 +19,7 @@ _STRIDE = 0.125
 """How far from the start places are taken, as a share of the coordinates: the n-th derivatives of the free places are
 then visible as 8^-n, beside 2^-280 to which the places are known."""
 
-_NEWTON_STEPS = 12
+_NEWTON_STEPS_OF_A_PLACE = 12
 """From a share of an eighth to 2^-280 quadratic convergence takes nine."""
 
 
@@ -106,7 +106,7 @@ class FreePlaces:
     def _place(self, step: Line) -> list[Ball] | None:
         """Return the place next to one that is a step away from the start, None where it does not meet all measures."""
         q = [x + step[j] if j in step else x for j, x in enumerate(self._table.q)]
-        for _ in range(_NEWTON_STEPS):
+        for _ in range(_NEWTON_STEPS_OF_A_PLACE):
             q = [x.mid() for x in q]
             try:
                 lines = [bound.line(q) for bound in self._bounds]

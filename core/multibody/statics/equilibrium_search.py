@@ -20,7 +20,7 @@ MOST_FOUND = 100
 
 _STARTS = 128
 """Starts for every degree of freedom."""
-_NEWTON_ROUNDS = 60
+_NEWTON_STEPS_OF_A_START = 60
 """Newton steps of a start: quadratic convergence takes some ten from nearby, the others are for the way there."""
 
 _MOST_OPERATIONS = 80_000_000
@@ -129,7 +129,7 @@ def _begin(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats,
 def _newton(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats) -> bool:
     """Follow Newton's method; return whether it stays within every bound."""
     n, dwarfed = len(q), 0
-    for _ in range(_NEWTON_ROUNDS):
+    for _ in range(_NEWTON_STEPS_OF_A_START):
         left, terms, _off = linearised(arrays, q, multipliers, system, right)
         largest, far = _largest(multipliers), _largest(q)
         singular = _step(arrays, system, right)

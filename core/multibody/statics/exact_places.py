@@ -35,15 +35,15 @@ _STEPS = 14
 _BLOCK, _SLOW_BLOCKS = 6, 64
 """Beside a solution of multiplicity three Newton's steps go a third of the way on the average, and are uneven: they are
 taken together by six. So many blocks lead from 1e-9 to 1e-40 at a multiplicity of ten."""
-_GUARD = 40
+_GUARD_OF_A_STEP = 40
 """Bits of the precision that rounding may take of a step."""
-_SETTLED = 2.0**-90
+_FOLLOWED_TO = 2.0**-90
 """Share of the scene's size to which a multiple solution is followed: of multiplicity three, a third of the bits."""
 _STALLED = 0.9
 """Ratio of the largest steps of two blocks from which on they lead nowhere."""
 _WIDER = 2.0**20
 """By how much a box is widened if it is not proven to hold a solution; three times."""
-_UNITS = 0.02
+_UNITS_OF_A_NEWTON_STEP = 0.02
 """Units of work (`core.work`) of a step, times the cube of the unknowns."""
 
 
@@ -213,7 +213,7 @@ class RestEquations:
 
     def _step(self, x: Sequence[Ball], unknowns: Sequence[int], equations: Sequence[int]) -> list[Ball] | None:
         """Return Newton's step of the unknowns, None where the equations do not determine it."""
-        spend(_UNITS * len(unknowns) ** 3)
+        spend(_UNITS_OF_A_NEWTON_STEP * len(unknowns) ** 3)
         rows, left = self.derivatives(x).tolist(), self.residuals(x)
         matrix = arb_mat([[rows[i][j].mid() for j in unknowns] for i in equations])
         try:
@@ -235,7 +235,7 @@ class RestEquations:
             share = self._share(unknowns, step)
             if not share < 1.0:
                 return None
-            if share < 2.0 ** (_GUARD - ctx.prec):
+            if share < 2.0 ** (_GUARD_OF_A_STEP - ctx.prec):
                 return self._enclosed(x, unknowns, equations)
         return None
 
@@ -253,7 +253,7 @@ class RestEquations:
         left = self.residuals(x)
         off = (inverse * arb_mat([[left[i]] for i in equations])).entries()
         wide = [
-            4 * abs(y).upper() + self.sizes[i] * arb(2) ** (_GUARD - ctx.prec)
+            4 * abs(y).upper() + self.sizes[i] * arb(2) ** (_GUARD_OF_A_STEP - ctx.prec)
             for i, y in zip(unknowns, off, strict=True)
         ]
         for _ in range(3):
@@ -285,7 +285,7 @@ class RestEquations:
                     x[i] = (x[i] - change).mid()
                 largest = max(largest, share)
             ratio = largest / before
-            if largest < _SETTLED or (largest < _SETTLED**0.5 and ratio > _STALLED):
+            if largest < _FOLLOWED_TO or (largest < _FOLLOWED_TO**0.5 and ratio > _STALLED):
                 # Each block goes the share 1 - ratio of what is left of the way.
                 rest = 2.0 * _BLOCK * largest / (1.0 - min(ratio, _STALLED))
                 return [arb(y, size * rest) for y, size in zip(x, self.sizes, strict=True)]

@@ -23,9 +23,9 @@ from core.multibody.statics.exact_places import ExactPlace, RestEquations
 from core.multibody.statics.small_motions import SoftDirection
 from core.work import spend
 
-_BITS = 192
+_BITS_BESIDE = 192
 """For forces that differ by the cube of a distance of 2^-40."""
-_FARTHEST = -4
+_FARTHEST_POWER = -4
 """Distance, as a power of the root of two of the scene's size, beyond which Newton's method finds places from afar."""
 _LEAST, _BEFORE = -80.0, 8
 """The nearest place is about as far as the share of stiffness that is left, or as its root: distances begin at a
@@ -37,15 +37,15 @@ _HALVINGS_OF_A_DISTANCE = 24
 """Halvings of a distance: what they leave, 1e-7 of it, is within the reach of Newton's method."""
 
 _SHORT_STEP = 2.0**-120
-"""Share of a step that is small enough: its square is below the rounding of `_BITS`."""
+"""Share of a step that is small enough: its square is below the rounding of `_BITS_BESIDE`."""
 
-_UNITS = 0.02
+_UNITS_OF_A_DISTANCE = 0.02
 """Units of work (`core.work`) of a step, times the cube of the unknowns."""
 
 
 def places_beside(equations: RestEquations, place: ExactPlace, direction: SoftDirection) -> Iterator[ExactPlace]:
     """Yield further places of rest along a soft direction."""
-    with precision(_BITS):
+    with precision(_BITS_BESIDE):
         found = list(_starts(equations, place, direction))
     for x in found:
         refined = equations.refined(x)
@@ -59,7 +59,7 @@ def _starts(equations: RestEquations, place: ExactPlace, direction: SoftDirectio
     nearest = math.floor(2.0 * math.log2(share)) - _BEFORE
     for way in (1, -1):
         x, before, last = path.start, ZERO, ZERO
-        for k in range(nearest, _FARTHEST + 1):
+        for k in range(nearest, _FARTHEST_POWER + 1):
             distance = way * (arb(2) ** k).sqrt()
             held = path.held(x, distance)
             if held is None:
@@ -86,7 +86,7 @@ class _Path:
         equations, count, size = self.equations, self.equations.count, len(x)
         x, force = list(x), ZERO
         for _ in range(_NEWTON_STEPS_OF_A_DISTANCE):
-            spend(_UNITS * (size + 1) ** 3)
+            spend(_UNITS_OF_A_DISTANCE * (size + 1) ** 3)
             rows = equations.derivatives(x).tolist()
             left = equations.residuals(x)
             for i, t in enumerate(self.forces):

@@ -20,7 +20,7 @@ from core.multibody.statics.exact_places import ExactPlace, RestEquations
 from core.multibody.table.table import Table
 from core.work import spend
 
-_UNITS = 0.4
+_UNITS_OF_MODES = 0.4
 """Units of work (`core.work`) for characteristic roots, times the cube of their number."""
 
 _SOFT = 2.0**-6
@@ -153,7 +153,7 @@ def _squares(matrix: Any) -> list[Ball]:
 
 def _roots(matrix: Any, size: int) -> list[Any]:
     """Return the characteristic roots of a matrix."""
-    spend(_UNITS * size**3)
+    spend(_UNITS_OF_MODES * size**3)
     try:
         found: list[Any] = matrix.eig(multiple=True)
     except ValueError:

@@ -42,7 +42,7 @@ _NARROW = 2.0**-64
 _MOST_HALVINGS = 200
 """Halvings of an end: 64 reach `_NARROW`, and 128 an end at zero."""
 
-_UNITS = 50.0
+_UNITS_OF_A_PROBE = 50.0
 """Work of one probe, for every coordinate of the scene."""
 
 
@@ -80,7 +80,7 @@ class _Varied:
         numerals = Numerals.of(self.scene.let, self.scene.numbers, instead={self.path: value})
         try:
             base = described(self.scene, numerals, one_sided=True)
-            spend(_UNITS * len(base.measures.table.names))
+            spend(_UNITS_OF_A_PROBE * len(base.measures.table.names))
             touching = assemble_contacts(base).touching
         except MechanicsError as fault:
             raise InvalidParameter(
