@@ -31,9 +31,6 @@ from core.multibody.search.pieces import Expanded, repeats_after
 from core.multibody.table.description import Described
 from core.multibody.table.table import Row
 
-_BEYOND = 1.001
-"""How far beyond the end of a phase, as a share of it, a gap is looked at that may only just have closed."""
-
 
 class SingularPlace(Exception):
     """The motion ends in a phase: its connections lose their hold, or a length is zero.
@@ -107,7 +104,7 @@ def _crossings(
     if phase.turning:
         return _while_turning(base, phase, watched, float(left))
     if phase.uniform:
-        return _on_two_tracks(phase, watched, left)
+        return _searched(phase, watched, float(left))
     return first_without_share(phase, watched, float(left), partial(_searched, phase))
 
 
@@ -120,25 +117,6 @@ def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed:
         if w.what == "gap"
     )
     return [] if first is None else [first]
-
-
-def _on_two_tracks(phase: Phase, watched: Sequence[Watch], left: Ball) -> list[Crossing]:
-    """Return the end of a phase whose accelerations are constant, and whose state is known from two tracks.
-
-    Its polynomials have their roots in balls, however soon they come after the start; what only grazes zero, to the
-    width of its error, is searched for up to there.
-    """
-    motions = [uniform_motion(table.table, model) for table, model in zip(phase.tables, phase.models, strict=True)]
-    first, _ = first_in_closed_form(motions[0], watched, left)
-    if first is None:
-        return _searched(phase, watched, float(left))
-    crossings = [first]
-    for motion in motions[1:]:
-        # The other track may come there later than the first, even after the time that is left; or only just not.
-        other, _ = first_in_closed_form(motion, [first.watch], 2 * left)
-        crossings.append(first if other is None else other)
-    found = _searched(phase, watched, min(float(left), _BEYOND * float(first.time)))
-    return found if found and found[0].time < first.time else crossings
 
 
 def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
