@@ -18,7 +18,7 @@ from core.errors import InvalidParameter, MechanicsError
 from core.multibody.answer import SceneSolution
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.scene import Scene
-from core.multibody.trajectory.trajectories import SceneRequest, require_affordable
+from core.multibody.trajectory.scene_request import SceneRequest, require_affordable
 
 
 class Span(NamedTuple):

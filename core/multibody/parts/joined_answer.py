@@ -15,7 +15,7 @@ from core.multibody.parts.joined_model import joined_model, period_of
 from core.multibody.parts.joined_phases import joined_phases
 from core.multibody.parts.joined_trajectory import joined_trajectory
 from core.multibody.parts.searched_parts import ELSEWHERE, joined_searches, outputs_of, part_of
-from core.multibody.trajectory.trajectories import SceneRequest
+from core.multibody.trajectory.scene_request import SceneRequest
 from core.systems.rounding import shortened
 
 Figure = TypeVar("Figure")

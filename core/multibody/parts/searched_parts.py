@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from core.multibody.answer import Occurrence, SceneExtremes, SceneSolution
 from core.multibody.language.scene import Scene
 from core.multibody.trajectory.occurrences import ExtremesOf, of_search
-from core.multibody.trajectory.trajectories import Output
+from core.multibody.trajectory.scene_request import Output
 
 OF_ALL = {"energy.kinetic", "energy.potential", "momentum", "angular_momentum"}
 """Columns of the whole scene."""

@@ -13,10 +13,11 @@ R. I. Leine, H. Nijmeijer, "Dynamics and Bifurcations of Non-Smooth Mechanical S
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.arrays import Floats
 from core.balls import precision
 from core.errors import MechanicsError, NotApplicable, Path
 from core.multibody.algebra.polynomials import BITS
@@ -24,59 +25,68 @@ from core.multibody.contacts.contact_states import State
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.phases.phase import PhaseMotion
+from core.multibody.phases.phase_columns import ColumnsInPhases
 from core.multibody.phases.phases import motion_in_phases
-from core.multibody.trajectory.inherited import MOST_PROPAGATED_NUMBERS, inputs_of
-from core.systems.trajectory import Column
+from core.multibody.trajectory.inherited import inputs_of
 
 MOVED = 2.0**-34
 """Share by which a number is moved: its effect is seen in doubles to some 2^-18 of itself."""
 KNOWN = 2.0**-40
 """Largest error of a column, relative to its largest value, from which derivatives are formed."""
 
-ColumnsOf = Callable[[PhaseMotion], dict[str, Column]]
-"""From a motion to the columns that are answered, at the same times."""
+
+@dataclass(frozen=True)
+class ChangesInPhases:
+    """Largest changes of columns by relative errors of one in every input, to first order.
+
+    Attributes
+    ----------
+    times : ndarray, shape (t,)
+    each : dict of str to ndarray, shape (t,)
+        Sums of magnitudes, by column.
+    """
+
+    times: Floats
+    each: dict[str, Floats]
+
+    def of_columns(self, rows: np.ndarray) -> dict[str, float]:
+        """Return the largest change of each column at some of the times."""
+        return {name: float(np.max(one[rows], initial=0.0)) for name, one in self.each.items()}
 
 
-def inherited_in_phases(
-    scene: Scene, motion: PhaseMotion, end: float, columns: dict[str, Column], columns_of: ColumnsOf
-) -> dict[str, float]:
-    """Return the largest change of every column by relative errors of one in all numbers, to first order.
+def changes_in_phases(scene: Scene, columns: ColumnsInPhases, times: Floats, end: float) -> ChangesInPhases:
+    """Return what the numbers of a scene do to the columns of its motion up to a time.
 
     Raises
     ------
     NotApplicable
         Where that cannot be told, with the reason.
     """
-    for name, body in scene.bodies.items():
-        if body.body is not None:
-            raise NotApplicable(f'"{name}" is a body of the catalogue, whose numbers are not propagated')
-    poor = next((name for name, one in columns.items() if one.error > KNOWN * one.largest > 0.0), None)
+    motion, own = columns.motion, columns.at(times)
+    poor = next((name for name, one in own.items() if one.error > KNOWN * one.largest > 0.0), None)
     if poor is not None:
         raise NotApplicable(f"{poor} is not known well enough for the effect of small changes to be seen in it")
     with precision(BITS):
-        inputs = list(inputs_of(motion.base.measures.numerals.read))
-    if len(inputs) > MOST_PROPAGATED_NUMBERS:
-        raise NotApplicable(
-            f"the description has {len(inputs)} numbers, and at most {MOST_PROPAGATED_NUMBERS} are propagated"
-        )
+        inputs = inputs_of(scene, motion.base)
     kinds = _kinds(motion)
-    total = {name: np.zeros(len(one.values)) for name, one in columns.items()}
+    total = {name: np.zeros(len(times)) for name in own}
     for paths in inputs:
         both = [_moved(scene, paths, end, share) for share in (MOVED, -MOVED)]
         if any(_kinds(other) != kinds for other in both):
             raise NotApplicable(
                 f"other events happen with another value of {_name(paths)}: the motion does not change in proportion"
             )
-        more, less = (columns_of(other) for other in both)
-        for name in columns:
+        more, less = (replace(columns, motion=other).at(times) for other in both)
+        for name in own:
             away = (more[name].values - less[name].values) / (2.0 * MOVED)
             total[name] += np.abs(away) if away.ndim == 1 else np.linalg.norm(away, axis=1)
-    return {name: float(np.max(one, initial=0.0)) for name, one in total.items()}
+    return ChangesInPhases(times, total)
 
 
 def _kinds(motion: PhaseMotion) -> tuple[list[tuple[str, str]], list[list[State]]]:
     """Return what happens: events, and the states between them."""
-    return [(event.kind, event.name) for event in motion.events], [phase.states for phase in motion.phases]
+    after = [(event.kind, event.name) for event in motion.events if event is not motion.before]
+    return after, [phase.states for phase in motion.phases]
 
 
 def _name(paths: tuple[Path, ...]) -> str:

@@ -12,7 +12,7 @@ from core.multibody.contacts.complementarity import Decided
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.contacts.projection import project
-from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
+from core.multibody.equations.dynamics import ForceAtStart, Multipliers, forces_at_start, multipliers_at_start
 from core.multibody.motion.modelling import Modelled, models_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.numerical import Numerical
@@ -70,12 +70,16 @@ class Phase:
         return all(is_uniform(model) for model in self.models) and has_constant_forces(self.tables[0])
 
     @cached_property
+    def start_forces(self) -> tuple[Multipliers, list[ForceAtStart]]:
+        """Multipliers at its start, and the forces of connections."""
+        measures = self.models[0].described.measures
+        multipliers = multipliers_at_start(measures, self.models[0].whole.acceleration)
+        return multipliers, forces_at_start(measures, multipliers)
+
+    @cached_property
     def determined(self) -> list[bool]:
         """Which of the forces the scene determines."""
-        model = self.models[0]
-        measures = model.described.measures
-        multipliers = multipliers_at_start(measures, model.whole.acceleration)
-        return [force.value is not None for force in forces_at_start(measures, multipliers)]
+        return [force.value is not None for force in self.start_forces[1]]
 
     @property
     def turning(self) -> bool:
@@ -114,6 +118,8 @@ class PhaseMotion:
         contacts could share it otherwise. A ball about zero is what bounces that are left out may take.
     fastest : dict of str to float
         The largest rates by their units, beside which a rate that is zero when it is sampled has its error.
+    before : MotionEvent or None
+        The event up to which the first phase is followed backwards.
     """
 
     base: Described
@@ -125,6 +131,12 @@ class PhaseMotion:
     ended: MotionEvent | None = None
     impacts: list[tuple[int, str, Ball | None]] = field(default_factory=list)
     fastest: dict[str, float] = field(default_factory=dict)
+    before: MotionEvent | None = None
+
+    @property
+    def smooth(self) -> bool:
+        """Whether nothing is unilateral: there is one phase, which a method may compute as well."""
+        return not self.unilateral
 
 
 def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:

@@ -1,4 +1,4 @@
-"""What is answered about a scene with unilateral measures: its start, phases and events, its motion through them."""
+"""What is answered about a scene: its start, phases and events, and its motion through them."""
 
 from __future__ import annotations
 
@@ -8,15 +8,19 @@ from itertools import zip_longest
 
 import numpy as np
 
-from core.errors import InvalidParameter, NotApplicable
+from core.errors import InvalidParameter, NotApplicable, SlackAtStart
+from core.multibody.algebra.doubles import error_in_doubles
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.answer import BodyAcceleration, ForceAnswer, MotionPhase, SceneProblem, SceneSolution
-from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equations.packed import nearest
 from core.multibody.language.scene import Scene
-from core.multibody.model_answer import SceneModel
+from core.multibody.model_answer import PartErrors, PartModel, SceneModel
+from core.multibody.motion.modelling import modelled
+from core.multibody.phases.before_start import follow_backwards
+from core.multibody.phases.described_system import SUMS, DescribedSystem
 from core.multibody.phases.phase import Phase, PhaseMotion
-from core.multibody.phases.phased_system import PhasedSystem
-from core.multibody.phases.phases import motion_in_phases
+from core.multibody.phases.phases import motion_in_phases, one_sided
+from core.multibody.phases.smooth_motion import ends_within, smooth_motion
 from core.multibody.phases.tracks import late
 from core.multibody.start import (
     accelerations_of,
@@ -26,53 +30,100 @@ from core.multibody.start import (
     name_of_parts,
     noticed_of,
     scene_model,
+    slack_strings,
 )
-from core.multibody.trajectory.trajectories import SceneRequest
+from core.multibody.statics.equilibria import equilibria_of
+from core.multibody.table.chains import has_chain
+from core.multibody.trajectory.scene_request import SceneRequest
 
 THRESHOLDS = "thresholds"
 """Place of a question about rest among the outputs: it is answered apart from the motion."""
 
 
-def answer_in_phases(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, PhasedSystem]:
-    """Answer a question about a scene with contacts, or with strings that are slack at times, by its motion.
+def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, DescribedSystem]:
+    """Return the answer to a question about a scene as one part, and the motion that it is from.
 
     Raises
     ------
     InvalidParameter
-        For a scene that cannot be, and for times before the start.
+        For a scene that cannot be.
     NotApplicable
-        For methods, and for equilibria.
+        For methods, equilibria and sums before the start, where something is unilateral.
     AccuracyUnreachable, BudgetExceeded
         As `core.multibody.solve.solve_scene`.
     """
-    _require_answerable(request)
-    end = float(np.max(request.times, initial=0.0))
-    motion = motion_in_phases(scene, end)
-    system = PhasedSystem(scene, motion, request.outputs)
+    motion = _motion_of(scene, request)
+    system = DescribedSystem(scene, motion, request.outputs)
     trajectory = request.solved(system)
-    occurrences, extremes = (None, None) if trajectory is None else system.searched(end)
-    model, accelerations, forces = _start_of(motion, end)
-    outputs = request.outputs
+    occurrences, extremes = (None, None) if trajectory is None else system.searched(request.times, request.accuracy)
+    model, accelerations, forces = _start_of(motion, float(np.max(request.times, initial=0.0)))
+    outputs, period = request.outputs, _period(motion)
+    if period is not None and ends_within(motion.phases[0], float(period)):
+        # What would repeat comes to an end, or its strings to another phase, before it does.
+        period, model = None, replace(model, apart=tuple(map(_without_period, model.apart)))
     answer = SceneSolution(
         model,
         accelerations if "accelerations" in outputs else None,
         forces if "forces" in outputs else None,
         replace(energy_of(motion.base), conserved=_conserved(motion)) if "energy" in outputs else None,
         trajectory,
-        None,
-        None,
-        None,
+        None if period is None else float(period),
+        None if period is None else error_in_doubles(period),
+        equilibria_of(motion.base) if "equilibria" in outputs else None,
         tuple(motion.events),
         motion.ended,
         occurrences,
         extremes,
-        phases=tuple(
+        phases=None
+        if motion.smooth
+        else tuple(
             _phase_in_answer(phase, following, motion)
             for phase, following in zip_longest(motion.phases, motion.phases[1:])
         ),
         problem=_problem(motion),
     )
     return answer, system
+
+
+def _motion_of(scene: Scene, request: SceneRequest) -> PhaseMotion:
+    """Return the motion of a scene: through events where something is unilateral, or a string is slack at times."""
+    if one_sided(scene):
+        return _in_phases(scene, request)
+    passes = request.method is None and not has_chain(scene)
+    try:
+        found = modelled(scene)
+    except SlackAtStart:
+        if not passes:
+            raise
+        return _in_phases(scene, request)
+    motion = smooth_motion(found, request.times)
+    if passes and slack_strings(found, motion.phases[0].start_forces[1]):
+        return _in_phases(scene, request)
+    slack = any(event.kind == "slack" and event.time >= 0.0 for event in motion.events)
+    # Slack strings become taut again: the scene has further phases.
+    if slack and passes and "equilibria" not in request.outputs:
+        return _in_phases(scene, request)
+    return motion
+
+
+def _period(motion: PhaseMotion) -> Ball | None:
+    """Return the period of a motion of which one part moves, None where it has none or is not smooth."""
+    if not motion.smooth:
+        return None
+    periods = [part.period for _, part in motion.phases[0].models[0].whole.parts if part.moves]
+    return periods[0] if len(periods) == 1 else None
+
+
+def _without_period(part: PartModel) -> PartModel:
+    return replace(part, period=None, precession=None, errors=PartErrors(None, None))
+
+
+def _in_phases(scene: Scene, request: SceneRequest) -> PhaseMotion:
+    _require_answerable(request)
+    motion = motion_in_phases(scene, float(np.max(request.times, initial=0.0)))
+    if motion.phases:
+        follow_backwards(motion, request.times)
+    return motion
 
 
 def _require_answerable(request: SceneRequest) -> None:
@@ -90,9 +141,9 @@ def _require_answerable(request: SceneRequest) -> None:
             remedy='ask between which values of a number it stays at rest: {"thresholds": {"vary", "between"}}',
         )
     before = np.flatnonzero(request.times < 0.0)
-    if len(before):
+    if len(before) and set(SUMS) & set(request.outputs):
         raise InvalidParameter(
-            ("times", int(before[0])), "be at least 0: contacts and impacts do not say what was before the start"
+            ("times", int(before[0])), "be at least 0 where works or paths are summed up through contacts"
         )
 
 
@@ -106,14 +157,16 @@ def _start_of(
         assert problem is not None, "a motion without phases has a problem"
         return SceneModel("undecided", problem.explanation, 0, 0, count, 0, (count, 0), (), tuple(noticed)), {}, {}
     found = motion.phases[0].models[0]
-    multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
-    values = forces_at_start(found.described.measures, multipliers)
+    multipliers, values = motion.phases[0].start_forces
     noticed += noticed_of(found, values, multipliers)
     resting = [set(at_rest(phase.models[0])) for phase in motion.phases]
     still = [name for name in at_rest(found) if all(name in names for names in resting)]
     if still:
         last = end if motion.ended is None else motion.ended.time
-        noticed.append(f"until {last:g} s nothing moves {', '.join(still)}")
+        names = ", ".join(still)
+        noticed.append(
+            f"constant throughout the motion: {names}" if motion.smooth else f"until {last:g} s nothing moves {names}"
+        )
     return (
         scene_model(found, noticed, multipliers.rank),
         accelerations_of(found.described, found.whole.acceleration),

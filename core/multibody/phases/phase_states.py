@@ -8,12 +8,14 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats
-from core.multibody.algebra.polynomials import Ball
+from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.equations.packed import pair
 from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
-from core.multibody.trajectory.columns import Columns, Unknown
+from core.multibody.trajectory.column_errors import FINEST
+from core.multibody.trajectory.columns import NEAREST, Columns, Unknown
+from core.multibody.trajectory.nearest import Nearest
 from core.systems.trajectory import Column, How
 
 Times = Floats | Sequence[Ball]
@@ -37,16 +39,19 @@ def phase_at(phases: Sequence[Phase], time: float) -> int:
     return low
 
 
-def states_in(phase: Phase, times: Times) -> WholeStates:
-    """Return the states of a phase, with what its tracks differ by."""
+def states_in(phase: Phase, times: Times, *, finer: bool = False) -> WholeStates:
+    """Return the states of a phase, with what its tracks differ by; finer ones where there is a choice."""
     if phase.bounces is not None:
         return _bouncing(phase, times)
-    found = [_of_track(phase, k, times) for k in range(len(phase.tracks))]
+    found = [_of_track(phase, k, times, finer=finer) for k in range(len(phase.tracks))]
     first = found[0]
-    floor_q, floor_v = (
-        FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
-    )
-    q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
+    q_error, v_error = first.q_error, first.v_error
+    # At the start of the scene the state is exact.
+    if not is_zero(phase.start):
+        floor_q, floor_v = (
+            FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
+        )
+        q_error, v_error = q_error + floor_q, v_error + floor_v
     unknown = _unknown(phase, times)
     if unknown is not None:
         q_error, v_error = q_error + unknown[0], v_error + unknown[1]
@@ -65,17 +70,22 @@ def _unknown(phase: Phase, times: Times) -> Unknown | None:
         return None
     moves = np.array([not still for still in phase.still])
     places, rates = np.array(phase.unknown[0]), np.array(phase.unknown[1]) * moves
-    late = np.array([max(float(arb(t) - phase.start), 0.0) for t in times])
+    late = np.array([abs(float(arb(t) - phase.start)) for t in times])
     return places + np.outer(late, rates), np.broadcast_to(rates, (len(times), len(rates)))
 
 
-def _of_track(phase: Phase, k: int, times: Times) -> WholeStates:
+def _of_track(phase: Phase, k: int, times: Times, *, finer: bool) -> WholeStates:
     """Return the states of one track at times since the start of the scene."""
     whole, start = phase.models[k].whole, phase.tracks[k].time
+    if isinstance(times, np.ndarray) and is_zero(start):
+        return whole.states(times, finer=finer)
     pairs = [pair(arb(t) - start, 0) for t in times]
-    late = np.maximum(np.array([p[0] for p in pairs]), 0.0) if pairs else np.zeros(0)
-    rest = np.array([p[1] if p[0] > 0.0 else 0.0 for p in pairs])
-    states = whole.states(late)
+    late = np.array([p[0] for p in pairs])
+    rest = np.array([p[1] for p in pairs])
+    if not is_zero(start):
+        # A later phase is not followed backwards: what is before its start is a time known too roughly.
+        rest, late = np.where(late > 0.0, rest, 0.0), np.maximum(late, 0.0)
+    states = whole.states(late, finer=finer)
     if not np.any(rest):
         return states
     q, v = _later(phase, k, states.q, states.v, rest)
@@ -114,11 +124,15 @@ def _bouncing(phase: Phase, times: Times) -> WholeStates:
 
 
 def columns_in(
-    phase: Phase, times: Times, states: WholeStates, how: How, outputs: Sequence[object]
+    phase: Phase,
+    times: Times,
+    states: WholeStates,
+    how: How,
+    outputs: Sequence[object],
+    rounding: float = FINEST,
 ) -> dict[str, Column]:
     """Return the columns of some outputs; forces that the phase does not determine are left out."""
-    determined = phase.determined if "forces-in-time" in outputs else ()
     since = np.array([float(t) for t in times])
-    return Columns(phase.models[0].whole, since, states, how, unknown=_unknown(phase, times)).chosen(
-        outputs, determined
-    )
+    columns = Columns(phase.models[0].whole, since, states, how, rounding, _unknown(phase, times))
+    chosen = Nearest(columns).chosen if rounding == NEAREST else columns.chosen
+    return chosen(outputs, phase.determined)

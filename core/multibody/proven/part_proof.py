@@ -25,9 +25,8 @@ from core.multibody.motion.motion import Motion, Rest
 from core.multibody.motion.uniform import Uniform
 from core.multibody.proven.proven_series import ProvenSeries, ProvenStep, Vector
 from core.multibody.start import noticed_of, scene_model, slack_strings
-from core.multibody.table.connection_effects import Limit
 from core.multibody.table.frames import Frame
-from core.multibody.trajectory.events import first_event
+from core.multibody.trajectory.events import End, end_of, first_event
 from core.systems.trajectory import MotionEvent
 
 
@@ -68,10 +67,15 @@ class PartProof:
         return "0" if is_zero(ball) else decimal(ball, self.digits)
 
     @property
-    def watched(self) -> list[Limit]:
+    def watched(self) -> list[End]:
         """What may end the motion."""
-        limits = self.found.whole.measures.limits
-        return [limit for limit in limits if limit.force is None or self.forces[limit.force].value is not None]
+        whole = self.found.whole
+        limits = whole.measures.limits
+        return [
+            end_of(whole, limit)
+            for limit in limits
+            if limit.force is None or self.forces[limit.force].value is not None
+        ]
 
     def reached(self, times: Sequence[Fraction]) -> tuple[list[int], list[MotionEvent]]:
         """Return the rows of the times before what ends the motion, which is looked for as in doubles, and that."""

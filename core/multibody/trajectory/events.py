@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from math import copysign
 
 from core.errors import AccuracyUnreachable, NotApplicable
-from core.multibody.algebra.polynomials import ZERO, is_zero, substituted, variables
+from core.multibody.algebra.polynomials import ZERO, Poly, is_zero, substituted, variables
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR
 from core.multibody.motion.whole import Whole
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
@@ -25,7 +26,34 @@ _LEAST = 2.0**-1000
 """Force (N) beside which others are lost below the range of doubles."""
 
 
-def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEvent | None:
+@dataclass(frozen=True)
+class End:
+    """What ends a motion where it falls below zero.
+
+    Attributes
+    ----------
+    event, name : str
+        Kind of the event, and the connection.
+    watched : Watched
+    length : polynomial or None
+        The length that it is, if it is one.
+    """
+
+    event: str
+    name: str
+    watched: Watched
+    length: Poly | None = None
+
+
+def end_of(whole: Whole, limit: Limit) -> End:
+    """Return the end of a motion by a limit."""
+    length = limit.force is None
+    return End(
+        limit.event, limit.name, Watched(partial(_along, whole, limit), not length, length, length), limit.length
+    )
+
+
+def first_event(whole: Whole, ends: Sequence[End], end: float) -> MotionEvent | None:
     """Return the first event between the start and `end`, which may be negative; None if there is none.
 
     Raises
@@ -33,37 +61,34 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEve
     NotApplicable
         Where a force that is watched leaves the range of doubles before any event.
     """
-    ended = _singular(whole, watched, end)
+    ended = _singular(whole, ends, end)
     end = end if ended is None else ended.time * BEFORE_SINGULAR
-    watched = [limit for limit in watched if not _safe(whole, limit)]
+    watched = [one for one in ends if not _safe(whole, one)]
     if not watched or end == 0.0:
         return ended
     _require_weight(whole, watched)
     expansions = Expansions.of(runs_of(whole))
     best: MotionEvent | None = None
     for group, reach in _groups(whole, watched, end):
-        quantities = [
-            Watched(partial(_along, whole, limit), limit.force is not None, limit.force is None, limit.force is None)
-            for limit in group
-        ]
+        quantities = [one.watched for one in group]
         search = FirstOfMotion(expansions, quantities, copysign(1.0, end))
         try:
             hit = search.until(min(reach, abs(end if best is None else best.time)))
         except AccuracyUnreachable:
             raise _out_of_range(group[0]) from None
         if search.below:
-            limit = group[search.below[0]]
-            return MotionEvent(limit.event, limit.name, 0.0, 0.0)
+            below = group[search.below[0]]
+            return MotionEvent(below.event, below.name, 0.0, 0.0)
         if hit is None:
             continue
         number, found = hit
-        event = _event(expansions.by(quantities[number]), group[number], quantities[number], found)
+        event = _event(expansions.by(quantities[number]), group[number], found)
         if abs(event.time) <= abs(end) and (best is None or abs(event.time) < abs(best.time)):
             best = event
     return ended if best is None else best
 
 
-def _singular(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEvent | None:
+def _singular(whole: Whole, watched: Sequence[End], end: float) -> MotionEvent | None:
     """Return the first place at which the motion itself ends."""
     found = None
     for indices, motion in whole.parts:
@@ -85,9 +110,9 @@ def runs_of(whole: Whole) -> list[tuple[Whole, str]]:
     return [(whole, kind) for kind in kinds]
 
 
-def _groups(whole: Whole, watched: Sequence[Limit], end: float) -> list[tuple[list[Limit], float]]:
+def _groups(whole: Whole, watched: Sequence[End], end: float) -> list[tuple[list[End], float]]:
     """Return what is watched with the time until which it is: where all that it follows repeats, no longer."""
-    found: dict[float, list[Limit]] = {}
+    found: dict[float, list[End]] = {}
     for limit in watched:
         seen = None if limit.length is None else sorted(variables([limit.length]))
         period = repeats_after(whole, seen)
@@ -103,26 +128,26 @@ def _along(whole: Whole, limit: Limit, pieces: Pieces) -> Curve:
     return curve
 
 
-def _event(motions: Sequence[Expanded], limit: Limit, quantity: Watched, found: Found) -> MotionEvent:
+def _event(motions: Sequence[Expanded], end: End, found: Found) -> MotionEvent:
     if found.width > 0.0:
-        return MotionEvent(limit.event, limit.name, found.time, found.width)
+        return MotionEvent(end.event, end.name, found.time, found.width)
     reach = copysign(max(abs(found.time), 2.0**-1000), found.time)
     try:
-        zeros = [located(motion, quantity.along, found.time, found.rest, reach) for motion in motions]
+        zeros = [located(motion, end.watched.along, found.time, found.rest, reach) for motion in motions]
     except NotLocated:
         # The series of a length that is one of the coordinates do not reach beyond its zero.
-        return MotionEvent(limit.event, limit.name, found.time, SINGULAR_TIME_ERROR * abs(found.time))
+        return MotionEvent(end.event, end.name, found.time, SINGULAR_TIME_ERROR * abs(found.time))
     time = float(zeros[0].time)
     error = FLOOR * zeros[0].width + 2.0**-52 * abs(time)
     error += SAFETY_FACTOR * abs(float(zeros[0].time - zeros[-1].time))
-    if limit.force is None:
+    if end.watched.singular:
         # Beside a singular place slopes tell nothing; that it lies there is known.
         error = min(error, SINGULAR_TIME_ERROR * abs(time))
-    return MotionEvent(limit.event, limit.name, time, error)
+    return MotionEvent(end.event, end.name, time, error)
 
 
-def _out_of_range(limit: Limit) -> NotApplicable:
-    what = "a force" if limit.force is not None else "a length"
+def _out_of_range(limit: End) -> NotApplicable:
+    what = "a force" if limit.watched.of_forces else "a length"
     return NotApplicable(
         f"{what} of {limit.name} leaves the range of doubles, and whether it stays positive is not known",
         path=("times",),
@@ -130,11 +155,11 @@ def _out_of_range(limit: Limit) -> NotApplicable:
     )
 
 
-def _require_weight(whole: Whole, watched: Sequence[Limit]) -> None:
+def _require_weight(whole: Whole, watched: Sequence[End]) -> None:
     """Raise where what moves a mass is no double: then whether forces stay positive is not known."""
     fastest = max((abs(x) for x in whole.acceleration), key=float, default=ZERO)
     moved = [abs(x) * fastest for x in whole.measures.table.mass.values()]
-    limit = next((limit for limit in watched if limit.force is not None), None)
+    limit = next((limit for limit in watched if limit.watched.of_forces), None)
     if limit is not None and any(not is_zero(x) and float(x) < _LEAST for x in moved):
         raise NotApplicable(
             f"a force of {limit.name} leaves the range of doubles, and whether it stays positive is not known",
@@ -143,7 +168,7 @@ def _require_weight(whole: Whole, watched: Sequence[Limit]) -> None:
         )
 
 
-def _safe(whole: Whole, limit: Limit) -> bool:
+def _safe(whole: Whole, limit: End) -> bool:
     """Return whether a length stays positive for all time, as the model of its motion shows."""
     if limit.length is None:
         return False
@@ -155,7 +180,7 @@ def _safe(whole: Whole, limit: Limit) -> bool:
     return False
 
 
-def _follows(whole: Whole, limit: Limit, indices: Sequence[int]) -> bool:
+def _follows(whole: Whole, limit: End, indices: Sequence[int]) -> bool:
     """Return whether a length is one of a part."""
     length = substituted(limit.length or {}, whole.reduced.expressions)
     return bool(length) and {key[0] for key in length if key} <= set(indices)

@@ -11,19 +11,20 @@ that is symmetric is to remain so.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
 from core.arrays import Floats
 from core.errors import MechanicsError, NotApplicable, Path
-from core.multibody.algebra.polynomials import Ball
 from core.multibody.algebra.rank import independent
 from core.multibody.language.numerals import SHIFT, Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.motion.modelling import Modelled, modelled
 from core.multibody.motion.whole import Whole, WholeStates
+from core.multibody.table.description import Described
 from core.multibody.trajectory.column_errors import relative
 from core.multibody.trajectory.columns import Columns
 from core.systems.trajectory import Accuracy, Column
@@ -82,14 +83,7 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
     NotApplicable
         Where that cannot be told, with the reason.
     """
-    for name, body in scene.bodies.items():
-        if body.body is not None:
-            raise NotApplicable(f'"{name}" is a body of the catalogue, whose numbers are not propagated')
-    inputs = list(inputs_of(found.described.measures.numerals.read))
-    if len(inputs) > MOST_PROPAGATED_NUMBERS:
-        raise NotApplicable(
-            f"the description has {len(inputs)} numbers, and at most {MOST_PROPAGATED_NUMBERS} are propagated"
-        )
+    inputs = inputs_of(scene, found.described)
     places, rates = found.whole.in_pairs(times)
     q, v = np.zeros(places.shape[:2]), np.zeros(rates.shape[:2])
     nothing = np.zeros(places.shape[:2])
@@ -128,15 +122,30 @@ def _shifted(pairs: Floats, change: Floats) -> Floats:
     return np.stack([high, (pairs[..., 0] - (high - back)) + (change - back) + pairs[..., 1]], axis=-1)
 
 
-def inputs_of(read: dict[Path, Ball]) -> Iterator[tuple[Path, ...]]:
-    """Yield the numbers that are uncertain by themselves, each with all of its places."""
+def inputs_of(scene: Scene, found: Described) -> list[tuple[Path, ...]]:
+    """Return the numbers of a scene that are uncertain by themselves, each with all of its places.
+
+    Raises
+    ------
+    NotApplicable
+        For bodies whose numbers are not the scene's, and for more numbers than are propagated.
+    """
+    for name, body in scene.bodies.items():
+        if body.body is not None:
+            raise NotApplicable(f'"{name}" is a body of the catalogue, whose numbers are not propagated')
     shared: dict[tuple[Path, str], list[Path]] = {}
-    for path, value in read.items():
+    inputs: list[tuple[Path, ...]] = []
+    for path, value in found.measures.numerals.read.items():
         if path[0] == "bodies" and path[2] in ("moments", "tensor"):
             shared.setdefault((path[:3], value.str(40)), []).append(path)
         else:
-            yield (path,)
-    yield from map(tuple, shared.values())
+            inputs.append((path,))
+    inputs.extend(map(tuple, shared.values()))
+    if len(inputs) > MOST_PROPAGATED_NUMBERS:
+        raise NotApplicable(
+            f"the description has {len(inputs)} numbers, and at most {MOST_PROPAGATED_NUMBERS} are propagated"
+        )
+    return inputs
 
 
 def _moved(scene: Scene, found: Modelled, paths: tuple[Path, ...], share: float) -> Whole:
@@ -165,12 +174,25 @@ def instants(times: Floats) -> Floats:
     return found[np.argsort(np.abs(found), kind="stable")]
 
 
-def horizon(known: Changes, first: int, limit: float, columns: dict[str, Column]) -> float | None:
+class Changing(Protocol):
+    """Changes at some times."""
+
+    @property
+    def times(self) -> Floats:
+        """Times, shape (t,)."""
+        ...
+
+    def of_columns(self, rows: np.ndarray) -> dict[str, float]:
+        """Return the largest change of each column at some of the times."""
+        ...
+
+
+def horizon(known: Changing, first: int, limit: float, columns: dict[str, Column]) -> float | None:
     """Return the last of the times from number `first` on up to which changes stay below a limit, None if all do.
 
     Parameters
     ----------
-    known : Changes
+    known : Changing
         At times that, from that number on, grow in magnitude.
     limit : float
         Of the changes by relative errors of one, relative to the largest value in columns of the same unit.

@@ -11,7 +11,7 @@ from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, N
 from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from core.multibody.trajectory.occurrences import ExtremesOf, When
-from core.multibody.trajectory.trajectories import MOST_NUMBERS
+from core.multibody.trajectory.scene_request import MOST_NUMBERS
 from core.systems.budget import Budget
 from tests.core.multibody.worked_examples import read
 

@@ -40,6 +40,18 @@ def test_a_bounce_inherits_what_its_closed_form_says() -> None:
     assert answer.trajectory.accuracy.inherited is not None
 
 
+def test_the_horizon_is_the_last_instant_at_which_changes_stay_below_the_accuracy() -> None:
+    """While it falls the height h - g t^2/2 changes by h + g t^2/2, relative to the largest height of the samples."""
+    answer = solve_scene(
+        read(ball(0.75, 1.5)), [0.55, 0.9], ("trajectory",), accuracy=1e-9, input_uncertainty=1e-9 / 2.5
+    )
+    assert answer.trajectory is not None
+    largest = abs(column(answer, "ball.position").values[:, 1]).max()
+    instants = [0.9 * k / 64 for k in range(1, 65)]
+    expected = max(t for t in instants if 1.5 + 9.81 * t**2 / 2 <= 2.5 * largest and t < 0.5)
+    assert answer.trajectory.accuracy.horizon == pytest.approx(expected)
+
+
 def test_slipping_and_rolling_inherit_through_the_time_at_which_rolling_begins() -> None:
     """Rolling at 2 v/3 whatever the friction: the velocity inherits what v does, and nothing of the rest."""
     scene = {

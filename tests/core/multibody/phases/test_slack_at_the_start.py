@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
-from core.errors import InvalidParameter, NotApplicable
+from core.errors import NotApplicable
 from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import read
@@ -64,8 +65,17 @@ def test_what_slack_strings_are_not_answered_for_is_refused(
         solve_scene(read(scene), times, ("equilibria",))
     with pytest.raises(NotApplicable, match="s would have to push at the start"):
         proven_answer(read(scene), 20)
-    with pytest.raises(InvalidParameter, match="at least 0"):
-        solve_scene(read(scene), (-0.1,), ("trajectory",))
+
+
+@pytest.mark.parametrize("scene", [scene for scene, _ in SLACK])
+def test_it_was_slack_before_as_it_is_afterwards(scene: dict[str, Any]) -> None:
+    """What pulls the bob is the same at mirrored places: its motion is even but for its velocity."""
+    answer = solve_scene(read(scene), (-0.05, 0.05), ("trajectory",))
+    assert answer.trajectory is not None
+    assert not answer.events
+    own, velocity = answer.trajectory.columns["bob.position"], scene["bodies"]["bob"].get("velocity", 0.0)
+    before, after = own.values
+    assert np.allclose(after - before, 0.1 * np.array(velocity), rtol=0.0, atol=2.0 * own.error + 1e-17)
 
 
 def test_a_string_that_pulls_is_taut() -> None:

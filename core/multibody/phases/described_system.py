@@ -1,0 +1,243 @@
+"""The motion of a described scene through its phases, as a system: its samples, and what is searched in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
+from core.errors import AccuracyUnreachable, MechanicsError, NotApplicable, inside_field
+from core.multibody.answer import Occurrence, SceneExtremes
+from core.multibody.language.scene import Scene
+from core.multibody.motion.numerical import BEFORE_SINGULAR
+from core.multibody.motion.whole import Whole, WholeStates
+from core.multibody.phases.inherited_in_phases import changes_in_phases
+from core.multibody.phases.method_samples import integrated, measured
+from core.multibody.phases.phase import PhaseMotion
+from core.multibody.phases.phase_columns import ColumnsInPhases
+from core.multibody.phases.phase_states import in_closed_form, phase_at
+from core.multibody.phases.searches_in_phases import SearchInPhases
+from core.multibody.phases.smooth_motion import not_watched
+from core.multibody.phases.stretches import stretches
+from core.multibody.phases.sums_in_phases import SumsInPhases
+from core.multibody.trajectory.along import Along
+from core.multibody.trajectory.column_errors import FINEST, require_reached, scaled, worst
+from core.multibody.trajectory.columns import NEAREST, Columns
+from core.multibody.trajectory.events import OF_LENGTHS
+from core.multibody.trajectory.inherited import (
+    NO_HORIZON_NEEDED,
+    Changing,
+    changes,
+    horizon,
+    instants,
+    with_inherited,
+)
+from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.multibody.trajectory.scene_request import Output, require_affordable
+from core.multibody.trajectory.smooth_search import SmoothSearch
+from core.notices import Notice
+from core.systems.methods.closed_form import ClosedFormEvaluation
+from core.systems.methods.method import AbstractMethod
+from core.systems.question import MotionQuestion
+from core.systems.trajectory import HORIZON, Accuracy, Column, How, Trajectory, Work
+
+PLACES_AND_FORCES = ("trajectory", "forces-in-time")
+"""Outputs that an audit compares."""
+SUMS = ("work-in-time", "paths-in-time")
+"""Outputs that are summed up along the motion."""
+_ONLY_SUMS = "it is not propagated to what is summed up along the motion, and there is nothing else"
+
+
+class DescribedSystem:
+    """A described scene, as a system.
+
+    Parameters
+    ----------
+    scene : Scene
+    motion : PhaseMotion
+    outputs : sequence of str, When and ExtremesOf
+        Those of the motion are its columns.
+    """
+
+    def __init__(self, scene: Scene, motion: PhaseMotion, outputs: Sequence[Output]) -> None:
+        self.scene, self.motion, self.outputs = scene, motion, outputs
+        self.columns = ColumnsInPhases(motion, outputs)
+
+    @property
+    def _numerical(self) -> bool:
+        """Whether a phase may be computed in pairs of doubles in place of doubles."""
+        return self.motion.smooth and any(part.has_finer_run for _, part in self.motion.phases[0].models[0].whole.parts)
+
+    def how(self, end: float) -> How:
+        """Return how the errors of the motion up to a time are known."""
+        reached = self.motion.phases[: phase_at(self.motion.phases, end) + 1]
+        return "closed form" if all(map(in_closed_form, reached)) else "measured against pairs"
+
+    def trajectory(self, question: MotionQuestion) -> Trajectory:
+        """Return the samples up to the events that end the motion; see `core.systems.question.System`."""
+        motion, method = self.motion, question.method
+        require_affordable(len(question.times), len(motion.base.measures.table.names))
+        rows = np.array([k for k, t in enumerate(question.times) if self._is_reached(float(t))], dtype=np.int64)
+        times = question.times[rows]
+        how, work = self.how(float(np.max(times, initial=0.0))), Work(len(times))
+        # What leaves the range of doubles is refused.
+        with np.errstate(over="ignore", invalid="ignore"):
+            if question.integrator is None:
+                if method is not None and how != "closed form":
+                    raise NotApplicable(
+                        "this scene has no closed form",
+                        path=("method", "kind"),
+                        remedy="leave the method out, and the smallest model that suffices answers",
+                    )
+                columns = self._own(times, question.accuracy, how)
+            else:
+                how = "measured against closed form" if how == "closed form" else how
+                columns, work = self._by_method(times, question, question.integrator, how)
+            stated = Accuracy(question.accuracy, worst(columns), how)
+            if question.input_uncertainty is not None and len(times):
+                end = float(np.max(question.times))
+                columns, stated = self._with_inherited(times, columns, stated, question.input_uncertainty, end)
+        return Trajectory(
+            times,
+            scaled(columns),
+            stated,
+            None,
+            ClosedFormEvaluation().kind if method is None else method.kind,
+            work,
+            ended=HORIZON if motion.ended is None else motion.ended.kind,
+            rows=rows,
+            events=tuple(motion.events),
+            warnings=self._warnings(),
+        )
+
+    def _is_reached(self, time: float) -> bool:
+        """Return whether the motion is followed up to a time."""
+        motion = self.motion
+        if not motion.phases or (motion.before is not None and time < min(motion.before.time, 0.0)):
+            return False
+        if motion.ended is None:
+            return True
+        end = motion.phases[-1].end
+        return not arb(time) > (arb(motion.ended.time) if end is None else end)
+
+    def sampled(self, times: Floats) -> dict[str, Column]:
+        """Return places, rates and forces at some times; without forces where they are not known."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            try:
+                return replace(self.columns, outputs=PLACES_AND_FORCES).at(times)
+            except AccuracyUnreachable:
+                return replace(self.columns, outputs=PLACES_AND_FORCES[:1]).at(times)
+
+    def _warnings(self) -> tuple[Notice, ...]:
+        """Return that some forces might end the motion, and are not determined."""
+        names = not_watched(self.motion.phases[0]) if self.motion.phases else []
+        if not names:
+            return ()
+        detail = f"whether {', '.join(names)} would have to push is not known: these forces are not determined"
+        return (Notice("end-not-known", detail, ("connections",)),)
+
+    def _own(self, times: Floats, accuracy: float, how: How) -> dict[str, Column]:
+        """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""
+        columns = self.columns.with_sizes(times)
+        if worst(columns) > accuracy and self._numerical and accuracy >= FINEST:
+            self.columns = replace(self.columns, finer=True)
+            columns = self.columns.with_sizes(times)
+        if worst(columns) > accuracy and (accuracy < FINEST or self.columns.are_known(times, accuracy)):
+            self.columns = replace(self.columns, finer=True)
+            columns = replace(self.columns, rounding=NEAREST).with_sizes(times)
+        columns |= self._sums(times, how)
+        lost = worst(columns) > accuracy
+        require_reached(columns, accuracy, before=self.columns.reached_until(times, accuracy) if lost else None)
+        return columns
+
+    def _sums(self, times: Floats, how: How) -> dict[str, Column]:
+        """Return the columns of what is summed up along the motion."""
+        if not set(SUMS) & set(self.outputs):
+            return {}
+        sums: Along | SumsInPhases
+        if self.motion.smooth:
+            sums = Along(self.motion.phases[0].models[0].whole, times, how, finer=self.columns.finer)
+        else:
+            pieces = list(stretches(self.motion, float(np.max(times, initial=0.0))))
+            sums = SumsInPhases(self.motion, pieces, times, how)
+        found = sums.works() if "work-in-time" in self.outputs else {}
+        return found | (sums.paths() if "paths-in-time" in self.outputs else {})
+
+    def _by_method(
+        self, times: Floats, question: MotionQuestion, method: AbstractMethod, how: How
+    ) -> tuple[dict[str, Column], Work]:
+        """Return the columns that a method computes, measured against the motion itself, and what they cost."""
+        if any(output in SUMS or not isinstance(output, str) for output in self.outputs):
+            raise NotApplicable(
+                "what is summed up or searched along the way belongs to the motion itself, not to a method",
+                path=("method",),
+                remedy="leave the method out",
+            )
+        whole = self.motion.phases[0].models[0].whole
+        with inside_field("method"):
+            states, work = integrated(whole, times, method, question.budget)
+        own = self.columns.of_states(times, states, how)
+        return measured(own, self.columns, times, numerical=self._numerical), work
+
+    def _with_inherited(
+        self, times: Floats, columns: dict[str, Column], stated: Accuracy, uncertainty: float, end: float
+    ) -> tuple[dict[str, Column], Accuracy]:
+        """Add what the uncertainty of the inputs does up to a time, or why that is not known."""
+        every = np.concatenate([times, instants(times)])
+        known: Changing
+        try:
+            if self.motion.smooth:
+                known = changes(self.scene, self.motion.phases[0].models[0], every, self._following)
+            else:
+                known = changes_in_phases(self.scene, self.columns, every, end)
+            moved = known.of_columns(np.arange(len(times)))
+        except MechanicsError as fault:
+            return columns, replace(stated, why=fault.detail)
+        own = {name: column for name, column in columns.items() if name in moved}
+        if not own:
+            return columns, replace(stated, why=_ONLY_SUMS)
+        moved = {name: moved[name] for name in own}
+        until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
+        why = None if until is not None else NO_HORIZON_NEEDED
+        return with_inherited(columns, replace(stated, horizon=until), moved, uncertainty, why=why)
+
+    def _following(self, whole: Whole, times: Floats, states: WholeStates) -> dict[str, Column]:
+        """Return the columns that follow from places and rates."""
+        followed = [output for output in self.outputs if output != "trajectory"]
+        return Columns(whole, times, states, "closed form").chosen(followed, self.motion.phases[0].determined)
+
+    def searched(
+        self, times: Floats, accuracy: float
+    ) -> tuple[tuple[Occurrence, ...] | None, tuple[SceneExtremes, ...] | None]:
+        """Return when quantities take values and how large they become, between the start and the latest of the times.
+
+        None where no search is among the outputs.
+        """
+        searches = [(i, output) for i, output in enumerate(self.outputs) if isinstance(output, (When, ExtremesOf))]
+        if not searches:
+            return None, None
+        motion, end = self.motion, float(np.max(times))
+        ended = motion.ended
+        end = end if ended is None else min(end, ended.time)
+        with np.errstate(over="ignore", invalid="ignore"):
+            if motion.smooth:
+                phase, how = motion.phases[0], self.how(end)
+                expanded = end if ended is None or ended.kind not in OF_LENGTHS else BEFORE_SINGULAR * end
+                whole, finer = phase.models[0].whole, self.columns.finer
+                search = SmoothSearch(whole, how, phase.determined, end, expanded, accuracy, self._numerical, finer)
+                return search.found(self.outputs)
+            pieces = list(stretches(motion, end))
+            if not pieces:
+                return (), ()
+            along = SearchInPhases(pieces, self.how(end))
+            found: list[Occurrence] = []
+            ranges: list[SceneExtremes] = []
+            for index, one in searches:
+                if isinstance(one, When):
+                    found.extend(along.occurrences(one, index))
+                else:
+                    ranges.append(along.extremes(one, index))
+        return tuple(found), tuple(ranges)

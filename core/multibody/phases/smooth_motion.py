@@ -1,0 +1,72 @@
+"""The motion of a scene in which nothing is unilateral: one phase, between the events that end it on either side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from core.arrays import Floats
+from core.errors import MechanicsError
+from core.multibody.algebra.polynomials import ZERO
+from core.multibody.contacts.contact_states import PhaseTable
+from core.multibody.motion.modelling import Modelled
+from core.multibody.phases.phase import Phase, PhaseMotion
+from core.multibody.phases.tracks import Track
+from core.multibody.start import lost_at_start
+from core.multibody.table.connection_effects import Limit
+from core.multibody.trajectory.events import End, end_of, first_event
+
+
+def smooth_motion(found: Modelled, times: Floats) -> PhaseMotion:
+    """Return the motion of a scene with the models of its parts, as far as some times reach.
+
+    Without times only what ends it at the start is found.
+
+    Raises
+    ------
+    NotApplicable
+        Where a force that is watched leaves the range of doubles before any event.
+    """
+    table = found.described.measures.table
+    phase = Phase([Track(ZERO, table.q, table.v)], [found], [PhaseTable(table, [], [], [])], [], [])
+    motion = PhaseMotion(found.described, [], [phase])
+    watched = _watched(phase)
+    if not len(times):
+        motion.events = list(lost_at_start(found, phase.start_forces[1]))
+        motion.ended = next(iter(motion.events), None)
+        return motion
+    with np.errstate(over="ignore", invalid="ignore"):
+        first, last = float(np.min(times, initial=0.0)), float(np.max(times, initial=0.0))
+        motion.before = first_event(found.whole, watched, first) if first < 0.0 else None
+        ended = first_event(found.whole, watched, last) if last > 0.0 else None
+    motion.events = [event for event in (motion.before, ended) if event is not None]
+    motion.ended = next((event for event in motion.events if event.time >= 0.0), None)
+    return motion
+
+
+def ends_within(phase: Phase, time: float) -> bool:
+    """Return whether the motion of a phase ends before a time, or whether it does is not known."""
+    watched = _watched(phase)
+    if not watched:
+        return False
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            return first_event(phase.models[0].whole, watched, time) is not None
+    except MechanicsError:
+        return True
+
+
+def not_watched(phase: Phase) -> list[str]:
+    """Return the connections that might end a phase by forces that the scene does not determine."""
+    limits = phase.models[0].whole.measures.limits
+    return list(dict.fromkeys(limit.name for limit in limits if not _is_watched(phase, limit)))
+
+
+def _watched(phase: Phase) -> Sequence[End]:
+    whole = phase.models[0].whole
+    return [end_of(whole, limit) for limit in whole.measures.limits if _is_watched(phase, limit)]
+
+
+def _is_watched(phase: Phase, limit: Limit) -> bool:
+    return limit.force is None or phase.determined[limit.force]

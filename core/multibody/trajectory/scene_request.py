@@ -1,0 +1,55 @@
+"""A question about a described scene, as its parts and its motion are given it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from core.arrays import Floats
+from core.errors import BudgetExceeded
+from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.systems.budget import Budget
+from core.systems.methods.method import AbstractMethod
+from core.systems.question import System
+from core.systems.rounding import Digits
+from core.systems.solve import solve
+from core.systems.trajectory import Trajectory
+
+MOST_NUMBERS = 5_000_000
+"""Numbers that one trajectory may have."""
+
+Output = str | When | ExtremesOf
+
+
+def require_affordable(samples: int, coordinates: int) -> None:
+    """Raise `BudgetExceeded` for more samples of so many coordinates than one trajectory may have."""
+    most = MOST_NUMBERS // (4 * coordinates) if coordinates else samples
+    if samples > most:
+        raise BudgetExceeded("samples", samples, most, path=("times",), remedy="ask for fewer times")
+
+
+@dataclass(frozen=True)
+class SceneRequest:
+    """What is requested of a scene; the attributes are the parameters of `core.multibody.solve.solve_scene`."""
+
+    times: Floats
+    outputs: Sequence[Output]
+    accuracy: float
+    method: AbstractMethod | None
+    input_uncertainty: float | None
+    digits: Digits | None
+    budget: Budget
+
+    def solved(self, system: System) -> Trajectory | None:
+        """Return the trajectory of a system, None without times."""
+        if not len(self.times):
+            return None
+        return solve(
+            system,
+            self.times,
+            accuracy=self.accuracy,
+            method=self.method,
+            input_uncertainty=self.input_uncertainty,
+            digits=self.digits,
+            budget=self.budget,
+        )
