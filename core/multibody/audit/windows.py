@@ -33,6 +33,8 @@ SLOWEST = 0.05
 
 _PLACES = np.cos((2 * np.arange(NODES) + 1) * np.pi / (2 * NODES))[::-1]
 _COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(_PLACES, NODES - 1))
+"""From values at the places to coefficients of Chebyshev polynomials."""
+
 _STEEPEST = float(NODES**2)
 """Largest rate of the first term that is left out."""
 _ITSELF = np.eye(NODES, dtype=bool)

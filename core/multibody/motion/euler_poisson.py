@@ -31,6 +31,8 @@ from core.multibody.motion.turning_body import TurningBody, cross_matrix, invers
 from core.multibody.table.table import Table
 
 _CHUNK = 64
+"""Steps whose series are allocated at a time."""
+
 _ORDERS = {
     "doubles": (22, 2.0**-66),
     "reference": (26, 2.0**-78),
@@ -129,6 +131,7 @@ class EulerPoisson(Numerical):
 
 
 _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+"""Rows and columns of the upper triangle of a symmetric matrix."""
 
 
 def _turned(body: TurningBody, inverse: list[list[Ball]], i: int, j: int, k: int) -> Ball:

@@ -41,6 +41,9 @@ HEADER = 8
 """Parameters before the arrays: the rate of the table's clock, and seven counts."""
 
 MOST_CORRECTIONS = 12
+"""Newton steps onto the measures: they converge quadratically from the error of a step, and what takes more of them
+has left its branch."""
+
 QUADRATIC, ROUNDED = 1e-8, 4e-16
 """Newton's method ends at a correction of which the next one is the square; one of rounding's size changes nothing."""
 

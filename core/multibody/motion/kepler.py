@@ -29,7 +29,11 @@ from core.multibody.motion.motion import Motion, States
 from core.multibody.table.table import Table
 
 _SMALL = 2.0**-98
+"""Bound of the error of a state as a share of its size: eight bits more than the rounding to pairs."""
+
 _SOLVED = 2.0**-200
+"""Relative size of the last step of Newton's method: its square is far below the rounding of 320 bits."""
+
 _STUMPFF = [(1 / math.factorial(2 * k + 2), 1 / math.factorial(2 * k + 3)) for k in reversed(range(8))]
 _NODES = 96
 """Of a period, or of the way to a time, alike in s: the steps are short where the motion is fast."""

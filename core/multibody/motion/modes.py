@@ -35,6 +35,8 @@ MOST_NODES = 20000
 _UNITS_OF_ROOTS = 0.4
 """Units of work (`core.work`) for characteristic roots, times the cube of their number."""
 _BITS = 192
+"""Bits of sums over modes, and multiples of it where modes grow: those of pairs, and 86 that cancellation may take."""
+
 MOST_CANCELLED = 64.0
 """How much larger the terms of a sum over modes may be than the start that they add up to, where doubles have to do."""
 

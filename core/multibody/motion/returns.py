@@ -26,6 +26,8 @@ PLACES, RATES, POWER = 0, 1, 2
 """Functions of a section."""
 
 _CHUNK = 6
+"""Steps that are made before the section is looked for on them: most often a return is within a few."""
+
 _MOST_ZEROS = 64
 """Of one step."""
 _ROUNDED = 2.0**-96

@@ -16,7 +16,11 @@ from core.multibody.motion.motion import Motion, States, check_sample_count
 from core.multibody.table.table import Table
 
 _PER_RADIAN = 8
+"""Nodes to a radian: fifty to a turn."""
+
 _MOST_NODES = 400_000
+"""Nodes of one motion: the two components of the direction and their rates at so many are 26 MB in pairs."""
+
 FEW_RADIANS = 64.0
 """Up to which the sine of an angle in doubles is right to 2^-46."""
 

@@ -22,6 +22,7 @@ _NEWTON = 60
 _NEAR = 2.0**-6
 """Share of a piece within which its polynomials are right to pairs: what is left out is 2^-126 of what it was."""
 _SETTLED = 2.0**-104
+"""Share of a time to which a zero is settled: four units in the last place of pairs."""
 
 
 class NotLocated(Exception):

@@ -22,6 +22,8 @@ from core.multibody.search.taylor import ORDER, expand
 from core.multibody.table.connection_effects import Force
 
 _PAST = 1.0 + 2.0**-20
+"""A period and a millionth of it, so that a zero at its end is within."""
+
 COEFFICIENTS = ORDER - 1
 """Of every curve: multipliers have two powers less than coordinates."""
 

@@ -27,7 +27,11 @@ from core.multibody.trajectory.integrals import POINTS_OF_INTERVAL, Integrand, i
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
+"""Rounding of a work in doubles, as a share of its largest term: four units in the last place."""
+
 _MARGIN = 4.0
+"""Factor on the difference from the reference, which has an error of its own."""
+
 State = tuple[Floats, Floats]
 
 

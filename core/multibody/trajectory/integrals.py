@@ -19,6 +19,8 @@ from core.errors import BudgetExceeded
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _DEPTH = 60
+"""Halvings of an interval: there are no more doubles between its ends then."""
+
 MOST_POINTS = 400_000
 """Times at which an integrand is evaluated."""
 POINTS_OF_INTERVAL = 3 * len(_POINTS)
