@@ -19,6 +19,7 @@ from service.problems import Refusal, problem_of
 from service.requests.request_reader import Limits
 from service.responses.json_stream import composed
 from service.routes import questions
+from service.routes.assessments.route_source import RouteSource
 from service.routes.scenes import members, name_of
 from service.routing import PostRoute
 from tests.service.conftest import client_of, inline_service
@@ -27,8 +28,7 @@ from tests.service.random_questions import questions_of
 SERVICE = inline_service()
 ROUTES = {route.path: route for route in questions()}
 UNPLANNED = ("/v1/plan", "/v1/assessments", "/v1/variants", "/v1/studies")
-# Plans are made of any other question; assessments and variants cost their question. Plans of studies are tested with
-# those.
+# Plans are made of any other question; assessments and variants cost their question. Studies have a test of their own.
 PLANNED = [(route, name) for route in ROUTES.values() if route.path not in UNPLANNED for name in route.examples]
 PATH = "/v1/rotation/trajectory"
 HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
@@ -161,6 +161,32 @@ async def test_plans_run_nothing() -> None:
     with work_limit(2000):
         answered("/v1/plan", {"path": PATH, "request": request | {"round": "meaningful"}})
     assert plan["cost"]["milliseconds"] > 100.0 * (await planned(PATH, FREE))["cost"]["milliseconds"]
+
+
+async def test_a_study_is_planned_without_running_its_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    study = {
+        "question": {"path": PATH, "request": FREE | {"method": {"kind": "explicit-euler", "step": 1e-4}}},
+        "vary": [{"pointer": "/angular_velocity/0", "values": [0.1, 0.2, 0.3]}],
+        "quantities": ["/energy/initial"],
+    }
+
+    def never(source: RouteSource, request: str) -> None:
+        raise AssertionError("the question is run")
+
+    monkeypatch.setattr(RouteSource, "answer", never)
+    plan = await planned("/v1/studies", study)
+    assert (plan["answerable"], plan["errors"]) == (True, [])
+    # Of each member: 300,000 evaluations.
+    assert plan["cost"]["milliseconds"] > 1.0
+    for changes, pointer in (
+        ({"quantities": ["no pointer"]}, "/request/quantities/0"),
+        ({"vary": [{"pointer": "/nowhere", "values": [1.0]}]}, "/request/vary/0/pointer"),
+    ):
+        (fault,) = (await planned("/v1/studies", study | changes))["errors"]
+        assert fault["pointer"] == pointer
+    unknown = study | {"question": {"path": PATH, "request": FREE | {"unknown": 1}}}
+    (fault,) = (await planned("/v1/studies", unknown))["errors"]
+    assert fault["pointer"] == "/request/question/request/unknown"
 
 
 @pytest.mark.parametrize("method", INTEGRATORS, ids=lambda method: method.kind)

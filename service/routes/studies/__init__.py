@@ -91,7 +91,8 @@ class StudyRequest(Request):
 
 DESCRIPTION = """Answered with 202 and the state of the study; its address is in the Location header. Members that are
 refused are part of the results, with the code of their problem. Results are a function of the request alone: the
-same bits whatever the number of processes, and after any interruption. `/v1/plan` tells members and price."""
+same bits whatever the number of processes, and after any interruption. `/v1/plan` tells members and price without
+running the question."""
 
 
 def studying(routes: Sequence[PostRoute]) -> StudyRoute:
@@ -99,14 +100,14 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     table = QuestionTable(routes, (), "have studies")
 
     def plan(question: StudyRequest, budget: Budget) -> Answer:
-        return _planned(question, table, budget)
+        return _answerable(question, table, budget)
 
     def price(question: StudyRequest, budget: Budget) -> float:
         return table.price(question.question, budget) + PRICED * SECONDS_OF_A_MEMBER
 
     def probe(question: StudyRequest, budget: Budget) -> PlanningProbe:
-        found = plan(question, budget)
-        # The plan and what is answered beside it.
+        # The question itself is not run for it; what the answer has beside the plan is added.
+        found = _planned(question, table, budget)
         return PlanningProbe({**STATE, **found}, seconds=found["seconds"])
 
     def members(question: StudyRequest, budget: Budget) -> Members:
@@ -127,23 +128,36 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     )
 
 
-def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> Answer:
-    """Return members, inputs, figures, time and size of a study, or refuse it."""
-    route, design = table.route(question.question), question.all_members()
-    if design.members > budget.members:
-        remedy = "take fewer levels or a smaller count, or several studies"
-        path = ("vary",) if question.count is None else ("count",)
-        raise BudgetExceeded("members", design.members, budget.members, path=path, remedy=remedy)
+def _answerable(question: StudyRequest, table: QuestionTable, budget: Budget) -> Answer:
+    """Return what is planned of a study whose question is answered as it is, or refuse it."""
+    _require_members(question, budget)
     source = table.source(question.question, budget)
     with within_question():
         answer = source.answer(json.dumps(question.question.request))
-    inputs, figures = _paths(question)
-    for k, figure in enumerate(figures):
+    found = _planned(question, table, budget)
+    for k, figure in enumerate(_paths(question)[1]):
         value = value_at(answer, figure)
         if number_of(value) is None and not is_null(answer, figure):
             rule = "lead to a number, true or false in the answer"
             raise InvalidParameter(("quantities", k), rule)
-    members = Members(question, source)
+    return found | {"warnings": [notice.inside(*WITHIN) for notice in answer.get("warnings", ())]}
+
+
+def _require_members(question: StudyRequest, budget: Budget) -> Design:
+    """Return the design, or refuse more members than are allowed."""
+    design = question.all_members()
+    if design.members > budget.members:
+        remedy = "take fewer levels or a smaller count, or several studies"
+        path = ("vary",) if question.count is None else ("count",)
+        raise BudgetExceeded("members", design.members, budget.members, path=path, remedy=remedy)
+    return design
+
+
+def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> Answer:
+    """Return members, inputs, figures, time and size of a study without answering its question, or refuse it."""
+    route, design = table.route(question.question), _require_members(question, budget)
+    inputs, figures = _paths(question)
+    members = Members(question, table.source(question.question, budget))
     together = members.together
     each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
     seconds = design.members * each
@@ -167,7 +181,6 @@ def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> An
         "together": together,
         "seconds": seconds,
         "bytes": members.bytes_of(seconds),
-        "warnings": [notice.inside(*WITHIN) for notice in answer.get("warnings", ())],
     }
 
 
