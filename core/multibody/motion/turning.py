@@ -1,4 +1,4 @@
-"""A body of the plane that nothing turns: its direction goes round at a constant rate, in closed form."""
+"""What goes round at a constant rate, in closed form: the direction of a body of the plane, a place on a circle."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats
-from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, entry, is_zero
 from core.multibody.equations.packed import pair
 from core.multibody.motion.motion import Motion, States, check_sample_count
 from core.multibody.table.table import Table
@@ -27,21 +27,24 @@ FEW_RADIANS = 64.0
 
 @dataclass(frozen=True)
 class Turning(Motion):
-    """A direction (c, s), and its angle where that is a coordinate, at a constant rate.
+    """Two coordinates on a circle, and the angle of a direction where that is a coordinate, at a constant rate.
 
     Attributes
     ----------
     direction : tuple of int
-        Cosine and sine among the coordinates.
+        The two coordinates; of a direction its cosine and sine.
     turn : int or None
     rate : ball
         Angular velocity (rad/s).
+    centre : tuple of balls
+        Of the circle.
     """
 
     table: Table
     direction: tuple[int, int]
     turn: int | None
     rate: Ball
+    centre: tuple[Ball, Ball] = (ZERO, ZERO)
     name: str = "uniform rotation"
     why: str = "nothing turns the body: it goes on at the rate it has"
     how: str = "closed form"
@@ -56,16 +59,23 @@ class Turning(Motion):
         n = len(self.table.q)
         q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
         c, s = self.direction
+        first, second = self._away
         for k, t in enumerate(times):
             angle = self.rate * arb(float(t))
             sine, cosine = angle.sin_cos()
-            x = self.table.q[c] * cosine - self.table.q[s] * sine
-            y = self.table.q[s] * cosine + self.table.q[c] * sine
-            q[k, c], q[k, s] = pair(x, 0), pair(y, 0)
+            x = first * cosine - second * sine
+            y = second * cosine + first * sine
+            q[k, c], q[k, s] = pair(self.centre[0] + x, 0), pair(self.centre[1] + y, 0)
             v[k, c], v[k, s] = pair(-self.rate * y, 0), pair(self.rate * x, 0)
             if self.turn is not None:
                 q[k, self.turn], v[k, self.turn] = pair(self.table.q[self.turn] + angle, 0), pair(self.rate, 0)
         return States(q, v, 2.0**-100 * np.abs(q[..., 0]), 2.0**-100 * np.abs(v[..., 0]))
+
+    @property
+    def _away(self) -> tuple[Ball, Ball]:
+        """The start less the centre."""
+        c, s = self.direction
+        return self.table.q[c] - self.centre[0], self.table.q[s] - self.centre[1]
 
     @property
     def is_faster_in_doubles(self) -> bool:
@@ -80,9 +90,9 @@ class Turning(Motion):
         n = len(self.table.q)
         q, v = np.empty((len(times), n)), np.empty((len(times), n))
         c, s = self.direction
-        start = complex(float(self.table.q[c]), float(self.table.q[s]))
+        start, centre = (complex(*map(float, one)) for one in (self._away, self.centre))
         now = start * np.exp(1j * rate * times)
-        q[:, c], q[:, s] = now.real, now.imag
+        q[:, c], q[:, s] = centre.real + now.real, centre.imag + now.imag
         v[:, c], v[:, s] = -rate * now.imag, rate * now.real
         if self.turn is not None:
             q[:, self.turn], v[:, self.turn] = float(self.table.q[self.turn]) + rate * times, rate
@@ -112,15 +122,21 @@ def turning(part: Table, chosen: Sequence[int]) -> Turning | None:
         return None
     measure = measures[0].measure or {}
     squares = [key for key in measure if len(key) == 2]
-    if len(measure) != 3 or () not in measure or len(squares) != 2 or any(a != b for a, b in squares):
+    if len(squares) != 2 or any(a != b for a, b in squares):
         return None
     c, s = squares[0][0], squares[1][0]
+    if any(len(key) == 1 and key[0] not in (c, s) for key in measure):
+        return None
     if set(part.mass) != {(c, c), (s, s)} or not is_zero(part.mass[(c, c)] - part.mass[(s, s)]):
         return None
     if not is_zero(measure[squares[0]] - measure[squares[1]]):
         return None
-    square = part.q[c] * part.q[c] + part.q[s] * part.q[s]
-    rate = (part.q[c] * part.v[s] - part.q[s] * part.v[c]) / square
+    first, second = (-entry(measure, (i,)) / (2 * measure[squares[0]]) for i in (c, s))
+    x, y = part.q[c] - first, part.q[s] - second
+    square = x * x + y * y
+    if not square > 0:
+        return None
+    rate = (x * part.v[s] - y * part.v[c]) / square
     turn = None
     if rates:
         turn = next(i for i in range(3) if i not in (c, s))
@@ -128,11 +144,18 @@ def turning(part: Table, chosen: Sequence[int]) -> Turning | None:
         # The angle's rate is that of the direction, of which squares add up to one.
         expected: LinearForm = {turn: {(): ZERO + 1}, s: {(c,): ZERO - 1}, c: {(s,): ZERO + 1}}
         factor = line.get(turn, {}).get((), ZERO)
-        if is_zero(factor) or not is_zero(square - 1) or rates[0].rate != 0 or set(line) != set(expected):
+        at_origin = is_zero(first) and is_zero(second)
+        if (
+            not at_origin
+            or is_zero(factor)
+            or not is_zero(square - 1)
+            or rates[0].rate != 0
+            or set(line) != set(expected)
+        ):
             return None
         for j, poly in expected.items():
             mine = line[j]
             if set(mine) != set(poly) or any(not is_zero(mine[key] / factor - x) for key, x in poly.items()):
                 # The other sense of the angle is the same with sine and cosine exchanged.
                 return None
-    return Turning(part, (c, s), turn, rate)
+    return Turning(part, (c, s), turn, rate, (first, second))

@@ -72,3 +72,27 @@ def test_what_repeats_in_every_turn_is_looked_at_for_one(horizon: float) -> None
     string = {"kind": "string", "name": "s", "through": ["a", "b"]}
     answer = solve_scene(read({"gravity": [0, 0], "bodies": ends, "connections": [string]}), [horizon])
     assert not answer.events
+
+
+@pytest.mark.parametrize("centre", [("0", "0"), ("3", "-7/3"), ("1e6/3", "1/7")], ids=str)
+@pytest.mark.parametrize("kind", ["rod", "track", "in space"])
+def test_a_place_goes_round_any_centre_at_a_constant_rate(kind: str, centre: tuple[str, str]) -> None:
+    """Without gravity: (x, y) = c + 0.5 (cos, sin)(0.9 t/0.5)."""
+    more = ["1/8"] if kind == "in space" else []
+    at = [*centre, *more]
+    body = {"mass": "1/3", "at": [f"{centre[0]} + 0.5", *at[1:]], "velocity": [0, 0.9, 0][: len(at)]}
+    held: dict[str, Any] = {"kind": "rod", "a": "b", "b": at}
+    if kind == "track":
+        held = {"kind": "track", "place": "b", "on": {"at": at, "radius": 0.5}}
+    times = [0.1, 3.0, 1e3, 1e12]
+    answer = solve_scene(read({"bodies": {"b": body}, "connections": [held]}), times, ("trajectory",))
+    assert answer.model.name == "uniform rotation"
+    found = column(answer, "b.position")
+    with mpmath.workdps(50):
+        x, y = (mpmath.mpf(p) / mpmath.mpf(q or 1) for p, _, q in (one.partition("/") for one in centre))
+        for time, row in zip(times, found.values.tolist(), strict=True):
+            angle = mpmath.mpf(9) / 5 * mpmath.mpf(time)
+            assert abs(row[0] - x - mpmath.cos(angle) / 2) <= found.error
+            assert abs(row[1] - y - mpmath.sin(angle) / 2) <= found.error
+        assert answer.period is not None
+        assert abs(answer.period - 10 * mpmath.pi / 9) <= (answer.period_error or 0)
