@@ -65,29 +65,30 @@ class Reader:
         self.bodies = {name: self._body(name) for name in scene.bodies}
         self.start: Placement = {name: body.start for name, body in self.bodies.items()}
 
-    def number(self, value: Any, path: Path) -> float:
+    def number(self, value: object, path: Path) -> float:
         """Return a number as the nearest double."""
         # The double that was sent is the one nearest to its decimal.
-        plain = type(value) in (int, float)
-        return float(value) if plain else float(self.numerals.number(value, path))
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return float(value)
+        return float(self.numerals.number(value, path))
 
-    def vector(self, value: Any, path: Path) -> tuple[float, ...]:
+    def vector(self, value: object, path: Path) -> tuple[float, ...]:
         """Return a vector of the dimension of the scene."""
         if isinstance(value, (list, tuple)):
             return tuple(self.number(x, (*path, i)) for i, x in enumerate(value))
         return tuple(float(x) for x in self.numerals.vector(value, path, self.dimension))
 
-    def unit(self, value: Any, path: Path) -> tuple[float, ...]:
+    def unit(self, value: object, path: Path) -> tuple[float, ...]:
         """Return the direction of a vector."""
         found = np.array(self.vector(value, path))
         return tuple((found / np.linalg.norm(found)).tolist())
 
-    def direction(self, slope: Any, path: Path) -> tuple[float, float]:
+    def direction(self, slope: object, path: Path) -> tuple[float, float]:
         """Return cosine and sine of a slope."""
         cosine, sine = self.numerals.angle(0 if slope is None else slope, path)
         return float(cosine), float(sine)
 
-    def place(self, value: Any, path: Path) -> Place:
+    def place(self, value: object, path: Path) -> Place:
         """Return a place: of a body, by name, or of the ground."""
         if not isinstance(value, str):
             return Place(None, self.vector(value, path))
@@ -98,7 +99,7 @@ class Reader:
             return Place(body, (0.0,) * self.dimension)
         return Place(body, self.bodies[body].places[spot])
 
-    def rim(self, value: Any) -> float:
+    def rim(self, value: object) -> float:
         """Return the radius of a body that is named as a whole; 0 of any other place."""
         body = self.bodies.get(value) if isinstance(value, str) else None
         return 0.0 if body is None or body.radius is None else body.radius

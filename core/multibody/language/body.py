@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
 
+from core.bodies import Body
 from core.multibody.language.written import Number, Vector
 
 
@@ -48,7 +48,7 @@ class SceneBody:
     inertia: Number | None = None
     moments: Vector | None = None
     tensor: Sequence[Vector] | None = None
-    body: Any = None
+    body: Body | None = None
     radius: Number | None = None
     angle: Number | None = None
     axes: Sequence[Vector] | None = None

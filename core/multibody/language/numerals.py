@@ -105,7 +105,7 @@ class Numerals:
             known[name] = found.number(number, ("let", name))
         return found
 
-    def number(self, value: Any, path: Path) -> Ball:
+    def number(self, value: object, path: Path) -> Ball:
         """Return a number as a ball.
 
         Raises
@@ -121,7 +121,7 @@ class Numerals:
         self.every[path] = found
         return found
 
-    def _written(self, value: Any, path: Path) -> Ball:
+    def _written(self, value: object, path: Path) -> Ball:
         if isinstance(value, str):
             return self._formula(value, path)
         if isinstance(value, Mapping):
@@ -147,7 +147,7 @@ class Numerals:
             raise InvalidParameter(path, "be finite")
         return found
 
-    def angle(self, value: Any, path: Path) -> tuple[Ball, Ball]:
+    def angle(self, value: object, path: Path) -> tuple[Ball, Ball]:
         """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""
         if isinstance(value, Mapping) and set(value) == {"degrees"} and not isinstance(value["degrees"], Mapping):
             turns = self.number(value["degrees"], (*path, "degrees")) / 180
@@ -156,7 +156,7 @@ class Numerals:
         sine, cosine = self.number(value, path).sin_cos()
         return cosine, sine
 
-    def vector(self, value: Any, path: Path, dimension: int) -> tuple[Ball, ...]:
+    def vector(self, value: object, path: Path, dimension: int) -> tuple[Ball, ...]:
         """Return a vector, in the plane also as ``{"polar": [r, angle]}``."""
         if isinstance(value, Mapping) and set(value) == {"polar"} and dimension == 2:
             polar = value["polar"]
@@ -172,7 +172,7 @@ class Numerals:
         return tuple(self.number(entry, (*path, i)) for i, entry in enumerate(value))
 
 
-def _exact(value: Any, path: Path) -> Fraction:
+def _exact(value: object, path: Path) -> Fraction:
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, Fraction)):
         raise InvalidParameter(path, "be a number")
     if isinstance(value, Fraction):

@@ -8,7 +8,6 @@ normal force. The rate of slip is that of the points of the two bodies that touc
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import (
@@ -98,7 +97,7 @@ def bounciness(measures: Measures, connection: Contact | String, path: Path) -> 
     return restitution, order
 
 
-def _friction(measures: Measures, value: Any, path: Path) -> tuple[Ball, Ball]:
+def _friction(measures: Measures, value: object, path: Path) -> tuple[Ball, Ball]:
     if value is None:
         return ZERO, ZERO
     if isinstance(value, Sequence) and not isinstance(value, str):
@@ -185,7 +184,7 @@ def _on(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> t
     return gap, _sum(sum_of_rates(*parts), _times(radius, spin_of(measures, point.body, path))), rolls
 
 
-def unit_in_plane(measures: Measures, value: Any, path: Path) -> list[Ball]:
+def unit_in_plane(measures: Measures, value: object, path: Path) -> list[Ball]:
     """Return a direction of the plane as a unit vector."""
     x, y = measures.numerals.vector(value, path, 2)
     square = x * x + y * y

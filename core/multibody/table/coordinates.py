@@ -26,7 +26,7 @@ from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
-from core.multibody.language.written import GROUND, Place
+from core.multibody.language.written import GROUND
 from core.multibody.table.frames import Frame, Given, Point
 from core.multibody.table.spatial_orientation import SpatialOrientation
 from core.multibody.table.table import Row, Table
@@ -50,7 +50,7 @@ class Coordinates:
                 self._add(name, body, seen.get(name, set()))
         faults.raised()
 
-    def point(self, place: Place, path: Path) -> Point:
+    def point(self, place: object, path: Path) -> Point:
         """Return a place.
 
         Raises
@@ -101,7 +101,7 @@ class Coordinates:
             return [constant(value) for value in components]
         return self._offset(self.frames[body], nothing, components, path)
 
-    def turn_of(self, body: Place, path: Path) -> Poly:
+    def turn_of(self, body: object, path: Path) -> Poly:
         """Return the angle of a body in the plane; of the ground, zero."""
         if body == GROUND:
             return {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import (
@@ -221,7 +221,7 @@ def _ends(measures: Measures, connection: TwoEnded, path: Path) -> tuple[Point, 
     return point(connection.a, (*path, "a")), point(connection.b, (*path, "b"))
 
 
-def _positive(measures: Measures, value: Any, path: Path) -> Ball:
+def _positive(measures: Measures, value: object, path: Path) -> Ball:
     number = measures.numerals.number(value, path)
     if not number > 0:
         raise InvalidParameter(path, "be greater than 0")
@@ -247,7 +247,7 @@ def _potential(measures: Measures, away: Poly, k: Ball) -> None:
     measures.potential = measures.potential + k * offset * offset / 2
 
 
-def _horizontal(gravity: Any, path: Path) -> list[Ball]:
+def _horizontal(gravity: Sequence[Ball], path: Path) -> list[Ball]:
     if all(is_zero(x) for x in gravity):
         return [ONE, ZERO]
     size = (gravity[0] * gravity[0] + gravity[1] * gravity[1]).sqrt()
@@ -256,7 +256,7 @@ def _horizontal(gravity: Any, path: Path) -> list[Ball]:
     return [-gravity[1] / size, gravity[0] / size]
 
 
-def _outward(measures: Measures, position: list[int], across: list[Ball], at: Any, square: Ball) -> None:
+def _outward(measures: Measures, position: list[int], across: list[Ball], at: Sequence[Ball], square: Ball) -> None:
     """Add the centrifugal force on a particle of the plane that spins about a line in the plane."""
     table = measures.table
     mass = entry(table.mass, (position[0], position[0]))
@@ -267,7 +267,7 @@ def _outward(measures: Measures, position: list[int], across: list[Ball], at: An
     _potential(measures, away, -mass * square)
 
 
-def _rotating(measures: Measures, vector: list[int], at: Any, rate: Ball) -> None:
+def _rotating(measures: Measures, vector: list[int], at: Sequence[Ball] | None, rate: Ball) -> None:
     """Add the forces m (2 rate v x z + rate^2 (q - at)) of a vector of the plane of rotation."""
     x, y = vector
     mass = entry(measures.table.mass, (x, x))

@@ -6,8 +6,7 @@ is the multiplier times an affine polynomial (a component of a direction).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import perpendicular, unit
@@ -62,7 +61,7 @@ class Measures:
         self.conservative = True
         # The horizontal direction of a plane that spins about its vertical: rates along it press across the plane.
         self.pressed_by: list[Ball] | None = None
-        self._lengths: dict[Any, int] = {}
+        self._lengths: dict[tuple[str, ...], int] = {}
         self._inverses: dict[int, int] = {}
 
     def hold(self, name: str, measure: Poly) -> int:
@@ -91,7 +90,7 @@ class Measures:
             self.force(f"{name}.{axis}", [(row, constant(ONE))])
         return rows
 
-    def rod(self, name: str, a: Point, b: Point, length: Any, path: Path) -> None:
+    def rod(self, name: str, a: Point, b: Point, length: object, path: Path) -> None:
         """Hold two places at a distance; the force is the pull."""
         self._two(a, b, path)
         d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]
@@ -188,7 +187,7 @@ class Measures:
             suffix = "normal" if self.dimension == 2 else f"normal.{number + 1}"
             self.force(f"{name}.{suffix}", [(row, constant(ONE))])
 
-    def on_curve(self, name: str, p: Point, curve: Any, path: Path) -> None:
+    def on_curve(self, name: str, p: Point, curve: Mapping[str, object], path: Path) -> None:
         """Hold a place on a line, circle, sphere, plane or parabola, of the ground or of a body."""
         where = (*path, "on")
         at = self.coordinates.point(self._field(curve, "at", where), (*where, "at"))
@@ -221,7 +220,7 @@ class Measures:
             kinds = "slope; radius; curvature" if self.dimension == 2 else "direction; normal; radius"
             raise InvalidParameter(where, f"have at, and one of: {kinds}")
 
-    def _parabola(self, name: str, d: list[Poly], at: Point, curve: Any, where: Path) -> None:
+    def _parabola(self, name: str, d: list[Poly], at: Point, curve: Mapping[str, object], where: Path) -> None:
         curvature = self.numerals.number(curve["curvature"], (*where, "curvature"))
         cosine, sine = self.numerals.angle(curve.get("slope", 0), (*where, "slope"))
         tangent = self.coordinates.vector_of(at.body, [cosine, sine], where)
@@ -243,12 +242,12 @@ class Measures:
         for axis, part in zip(COMPONENTS, parts, strict=False):
             self.force(f"{name}.{axis}", [(row, part)])
 
-    def _field(self, mapping: Any, key: str, path: Path) -> Any:
-        if not hasattr(mapping, "keys") or key not in mapping:
+    def _field(self, mapping: Mapping[str, object], key: str, path: Path) -> object:
+        if not isinstance(mapping, Mapping) or key not in mapping:
             raise InvalidParameter((*path, key), "be given")
         return mapping[key]
 
-    def _unit(self, value: Any, path: Path) -> list[Ball]:
+    def _unit(self, value: object, path: Path) -> list[Ball]:
         vector = self.numerals.vector(value, path, self.dimension)
         return unit(vector, path)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import (
@@ -65,7 +64,7 @@ def rolling_in_plane(measures: Measures, name: str, connection: Rolling, path: P
         raise InvalidParameter(path, "have place and on, or a and b")
 
 
-def _rim(measures: Measures, name: Any, path: Path) -> tuple[Point, Ball, Poly]:
+def _rim(measures: Measures, name: object, path: Path) -> tuple[Point, Ball, Poly]:
     """Return centre, radius and turn of a body with a rim."""
     frame = measures.coordinates.frames.get(name) if isinstance(name, str) else None
     if frame is None:

@@ -8,7 +8,6 @@ moments needs no others, because then I w' is the torque.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import cross, perpendicular, unit
@@ -86,7 +85,7 @@ class _Surface:
         self.d = [difference(x, y) for x, y in zip(centre.at, at.at, strict=True)]
         self.rates = [rate_of(x) for x in self.d]
 
-    def plane(self, normal: Any, rate: Any) -> None:
+    def plane(self, normal: object, rate: object) -> None:
         """Roll on a plane, which turns about its normal through the given place."""
         measures, name = self.measures, self.name
         n = unit(measures.numerals.vector(normal, (*self.path, "normal"), 3), (*self.path, "normal"))
@@ -110,7 +109,7 @@ class _Surface:
             terms = [(row, constant(e[i])) for row, e in zip(rows, across, strict=True) if not is_zero(e[i])]
             measures.force(f"{name}.friction.{axis}", terms)
 
-    def cylinder(self, direction: Any, radius: Any) -> None:
+    def cylinder(self, direction: object, radius: object) -> None:
         """Roll on a cylinder, or inside it where the radius is negative."""
         measures, name, table = self.measures, self.name, self.measures.table
         a = unit(measures.numerals.vector(direction, (*self.path, "direction"), 3), (*self.path, "direction"))
@@ -139,7 +138,7 @@ class _Surface:
         measures.force(f"{name}.friction.along", [(rising, constant(ONE))])
         measures.force(f"{name}.friction.around", [(circling, constant(ONE))])
 
-    def sphere(self, radius: Any) -> None:
+    def sphere(self, radius: object) -> None:
         """Roll on a sphere, or inside it where the radius is negative.
 
         No two directions of the tangent plane serve everywhere on a sphere. So the three components of the velocity are
@@ -164,7 +163,7 @@ class _Surface:
         normal = [(row, x) for row, x in zip(rows, n, strict=True)]
         measures.force(f"{name}.normal", [*normal, (held, constant(reach))])
 
-    def _reach(self, radius: Any) -> Ball:
+    def _reach(self, radius: object) -> Ball:
         own = self.measures.numerals.number(radius, (*self.path, "radius"))
         reach = own + self.radius
         if 0 in reach or 0 in own or (own < 0 and reach > 0):

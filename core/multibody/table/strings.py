@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
-from typing import Any
 
 from core.errors import InvalidParameter, Path, SlackAtStart
 from core.multibody.algebra.polynomials import (
@@ -137,7 +136,7 @@ def _knots(measures: Measures, connection: String, path: Path) -> list[Knot]:
     return found
 
 
-def _sides(value: Any, count: int, path: Path) -> list[str | None]:
+def _sides(value: object, count: int, path: Path) -> list[str | None]:
     rule = f"be {'a side' if count == 1 else 'two sides'} out of {', '.join(SIDES)}"
     if value is None:
         remedy = "where the string touches the drum, as seen from its centre, where it comes and where it leaves"
@@ -301,7 +300,7 @@ def _joined(first: LinearForm, second: LinearForm) -> LinearForm:
     return {j: combined((ONE, first.get(j, {})), (ONE, second.get(j, {}))) for j in {*first, *second}}
 
 
-def _length(measures: Measures, value: Any, path: Path) -> Ball:
+def _length(measures: Measures, value: object, path: Path) -> Ball:
     length = measures.numerals.number(value, (*path, "length"))
     if not length > 0:
         raise InvalidParameter((*path, "length"), "be greater than 0 m")
