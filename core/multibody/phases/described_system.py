@@ -18,7 +18,7 @@ from core.multibody.phases.inherited_in_phases import changes_in_phases
 from core.multibody.phases.method_samples import integrated, measured
 from core.multibody.phases.phase import PhaseMotion
 from core.multibody.phases.phase_columns import ColumnsInPhases
-from core.multibody.phases.phase_states import in_closed_form, phase_at
+from core.multibody.phases.phase_states import how_until
 from core.multibody.phases.searches_in_phases import SearchInPhases
 from core.multibody.phases.smooth_motion import not_watched
 from core.multibody.phases.stretches import stretches
@@ -71,18 +71,13 @@ class DescribedSystem:
         """Whether a phase may be computed in pairs of doubles in place of doubles."""
         return self.motion.smooth and any(part.has_finer_run for _, part in self.motion.phases[0].models[0].whole.parts)
 
-    def how(self, end: float) -> How:
-        """Return how the errors of the motion up to a time are known."""
-        reached = self.motion.phases[: phase_at(self.motion.phases, end) + 1]
-        return "closed form" if all(map(in_closed_form, reached)) else "measured against pairs"
-
     def trajectory(self, question: MotionQuestion) -> Trajectory:
         """Return the samples up to the events that end the motion; see `core.systems.question.System`."""
         motion, method = self.motion, question.method
         require_affordable(len(question.times), len(motion.base.measures.table.names))
         rows = np.array([k for k, t in enumerate(question.times) if self._is_reached(float(t))], dtype=np.int64)
         times = question.times[rows]
-        how, work = self.how(float(np.max(times, initial=0.0))), Work(len(times))
+        how, work = how_until(motion.phases, float(np.max(times, initial=0.0))), Work(len(times))
         # What leaves the range of doubles is refused.
         with np.errstate(over="ignore", invalid="ignore"):
             if question.integrator is None:
@@ -224,7 +219,7 @@ class DescribedSystem:
         end = end if ended is None else min(end, ended.time)
         with np.errstate(over="ignore", invalid="ignore"):
             if motion.smooth:
-                phase, how = motion.phases[0], self.how(end)
+                phase, how = motion.phases[0], how_until(motion.phases, end)
                 expanded = end if ended is None or ended.kind not in OF_LENGTHS else BEFORE_SINGULAR * end
                 whole, finer = phase.models[0].whole, self.columns.finer
                 search = SmoothSearch(whole, how, phase.determined, end, expanded, accuracy, self._numerical, finer)
@@ -232,7 +227,7 @@ class DescribedSystem:
             pieces = list(stretches(motion, end))
             if not pieces:
                 return (), ()
-            along = SearchInPhases(pieces, self.how(end))
+            along = SearchInPhases(pieces, how_until(motion.phases, end))
             found: list[Occurrence] = []
             ranges: list[SceneExtremes] = []
             for index, one in searches:

@@ -11,7 +11,7 @@ from core.arrays import Floats
 from core.errors import NotApplicable
 from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.phase import Phase, PhaseMotion
-from core.multibody.phases.phase_states import columns_in, in_closed_form, phase_at, states_in
+from core.multibody.phases.phase_states import columns_in, how_until, phase_at, states_in
 from core.multibody.trajectory.column_errors import FINEST, with_natural_sizes, worst
 from core.systems.trajectory import Column, How
 
@@ -47,8 +47,7 @@ class ColumnsInPhases:
         which = np.zeros(len(times), dtype=np.int64)
         if len(phases) > 1:
             which = np.array([phase_at(phases, float(t)) for t in times], dtype=np.int64)
-        last = int(np.max(which, initial=0))
-        how: How = "closed form" if all(map(in_closed_form, phases[: last + 1])) else "measured against pairs"
+        how = how_until(phases, float(np.max(times, initial=0.0)))
         pieces = []
         for k in sorted(set(which.tolist())) or [0]:
             mine = np.flatnonzero(which == k)

@@ -39,19 +39,23 @@ def phase_at(phases: Sequence[Phase], time: float) -> int:
     return low
 
 
+def how_until(phases: Sequence[Phase], time: float) -> How:
+    """Return how the errors of a motion up to a time are known."""
+    reached = phases[: phase_at(phases, time) + 1]
+    return "closed form" if all(map(in_closed_form, reached)) else "measured against pairs"
+
+
 def states_in(phase: Phase, times: Times, *, finer: bool = False) -> WholeStates:
     """Return the states of a phase, with what its tracks differ by; finer ones where there is a choice."""
     if phase.bounces is not None:
         return _bouncing(phase, times)
     found = [_of_track(phase, k, times, finer=finer) for k in range(len(phase.tracks))]
     first = found[0]
-    q_error, v_error = first.q_error, first.v_error
-    # At the start of the scene the state is exact.
-    if not is_zero(phase.start):
-        floor_q, floor_v = (
-            FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
-        )
-        q_error, v_error = q_error + floor_q, v_error + floor_v
+    # Pairs of doubles know no state better, also one that balls know exactly.
+    floor_q, floor_v = (
+        FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
+    )
+    q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
     unknown = _unknown(phase, times)
     if unknown is not None:
         q_error, v_error = q_error + unknown[0], v_error + unknown[1]
