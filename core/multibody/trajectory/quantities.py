@@ -46,7 +46,7 @@ class Sought(Protocol):
         """Return a curve that is zero wherever the quantity has a value."""
 
     def turning(self) -> Sequence[Quantity]:
-        """Return curves one of which is zero wherever the quantity has an extreme or jumps."""
+        """Return a curve that is zero wherever the quantity has an extreme, and others for where it jumps."""
 
     def has(self, found: float, value: float) -> bool:
         """Return whether the quantity has a value where its curve is zero, given what it has there in doubles."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from itertools import islice
 
 import numpy as np
@@ -20,6 +20,7 @@ from core.multibody.search.first_of_motion import Expansions
 from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located
 from core.multibody.search.pieces import Expanded
+from core.multibody.trajectory.column_errors import PLACES_BETWEEN
 from core.multibody.trajectory.quantities import Sought, shifted
 from core.systems.trajectory import Column
 
@@ -28,6 +29,8 @@ Sampler = Callable[[Floats], Column]
 
 _MOST_AT_ONCE = 256
 """Zeros of which the quantity is evaluated at once at most."""
+_BESIDE = 2.0**-48
+"""Share of the time of a jump by which its sides are before and after it: a few roundings."""
 _LEAST = 2.0**-1000
 """Time (s) below which no power of it is a double."""
 
@@ -94,6 +97,10 @@ class SearchAlong:
         noise : float
             The quantity has the value at time zero if it differs from it by no more: it leaves it there.
         """
+        between = self._between
+        if np.all(np.abs(between.values - value) <= 2.0 * between.error):
+            # What has the value all the time takes it no more.
+            return
         quantity = self.sought.less(arb(value))
         if abs(float(self.sampler(np.zeros(1)).values[0]) - value) <= noise:
             start = quantity(self._motions[0](np.zeros(1), np.array([self.end]))).values[0, 0]
@@ -109,11 +116,22 @@ class SearchAlong:
 
     def extremes(self) -> tuple[Extreme, Extreme]:
         """Return the least and the largest value."""
+        between = self._between
+        if np.ptp(between.values) <= 2.0 * between.error:
+            # Of a constant no time is told from another.
+            constant = Extreme(float(between.values[0]), 0.0, self.end)
+            return constant, constant
         quantities = self.sought.turning()
         zeros = EveryZero(self._motions, quantities, self._coarse)
         turns = [one for one in zeros.until(min(self.end, self.expanded)) if one.time < self.end]
-        times = np.array([0.0, *(one.time for one in turns), self.end])
-        column = self.sampler(times)
+        candidates: list[tuple[float, Found | None]] = [(0.0, None)]
+        for one in turns:
+            # A jump has two sides.
+            beside = _BESIDE * one.time if one.index else 0.0
+            candidates.extend((time, one) for time in dict.fromkeys((one.time - beside, one.time, one.time + beside)))
+        candidates.append((self.end, None))
+        times = np.array([time for time, _ in candidates])
+        column = self.sampler(np.clip(times, 0.0, self.end))
         found = []
         for sign in (-1.0, 1.0):
             values = sign * column.values
@@ -121,12 +139,17 @@ class SearchAlong:
             alike = values >= np.max(values) - 2.0 * column.error
             k = int(np.argmax(alike))
             last = k + int(np.argmin(np.append(alike[k:], False))) - 1
-            error = float(times[last] - times[k])
-            if 0 < k < len(times) - 1:
-                error += self._located(quantities[turns[k - 1].index], turns[k - 1]).error
-                error += 2.0**-52 * float(times[k])
+            error, turn = float(times[last] - times[k]), candidates[k][1]
+            if turn is not None:
+                error += self._located(quantities[turn.index], turn).error + abs(float(times[k]) - turn.time)
+                error += 2.0**-52 * turn.time
             found.append(Extreme(float(column.values[k]), float(times[k]), error))
         return found[0], found[1]
+
+    @cached_property
+    def _between(self) -> Column:
+        """The quantity at the start, the end, and places that meet no fraction of a period: whether it is constant."""
+        return self.sampler(self.end * np.array([0.0, *PLACES_BETWEEN, 1.0]))
 
     @property
     def _motions(self) -> tuple[Expanded, ...]:

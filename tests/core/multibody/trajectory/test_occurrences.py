@@ -254,3 +254,24 @@ def test_a_search_in_vain_leaves_a_notice(name: str) -> None:
     assert [notice.path for notice in notices] == [("outputs", i, "when") for i in (2, 3, 5)]
     assert "7 times" in notices[1].detail
     assert "until 0.4 s" in notices[1].detail
+
+
+def test_extremes_of_a_quaternion_have_both_sides_of_a_jump() -> None:
+    """Held against samples of the answer: they lie within the extremes, and come near to them."""
+    scene = json.loads((SCENES / "thrown-body.json").read_text())
+    scene = read({key: scene[key] for key in ("gravity", "bodies", "connections") if key in scene})
+    asked = [ExtremesOf(f"body.attitude.{part}") for part in "wxyz"]
+    answer = solve_scene(scene, np.linspace(0.0, 3.0, 1501), ["trajectory", *asked])
+    values = answer.trajectory.columns["body.attitude"].values
+    for found, curve in zip(answer.extremes, values.T, strict=True):
+        assert found.least - found.error <= np.min(curve)
+        assert np.max(curve) <= found.largest + found.error
+        assert np.min(curve) - found.least + found.largest - np.max(curve) < 0.02
+
+
+def test_a_constant_of_a_fast_motion_has_no_time_of_its_own() -> None:
+    scene = json.loads((SCENES / "lagrange-top.json").read_text())
+    scene = read({key: scene[key] for key in ("gravity", "bodies", "connections") if key in scene})
+    (found,) = solve_scene(scene, [10.0], [ExtremesOf("top.angular_momentum.z")]).extremes
+    assert found.largest - found.least <= 2.0 * found.error
+    assert found.errors["least_time"] == found.until
