@@ -66,7 +66,7 @@ class Dispatcher:
         self._turns = asyncio.Lock()
         self._cache = ResponseCache(settings.cached_answers)
         self._records = Records(metrics, settings.log_requests)
-        self._failed = FailedChecks(settings.failed_requests)
+        self._failed = FailedChecks(settings.failed_requests, metrics)
         self.bodies = Bodies(
             settings.max_body_bytes, settings.max_held_bytes, settings.body_seconds, lambda: compute.held
         )

@@ -226,7 +226,8 @@ class RequestContext:
     def close(self, status: int) -> None:
         """Count the request as finished."""
         seconds = perf_counter() - self._since
-        self._records.finished(self.identity, self.operation, self.scope["method"], status, seconds)
+        key = None if self.key is None else self.key.name
+        self._records.finished(self.identity, self.operation, self.scope["method"], status, seconds, key)
 
     def _coding(self, content_type: bytes) -> Coding | None:
         return coding_for(self.headers.get(b"accept-encoding"), content_type)

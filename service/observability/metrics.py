@@ -34,6 +34,10 @@ class Metrics:
         directory = os.environ.get(DIRECTORY)
         self.shared = None if directory is None else SharedCounts(registry, Path(directory))
         self._problems = Counter("polhode_problems", "Answers that are problems.", ("code",), registry=registry)
+        self.failed_checks = Counter(
+            "polhode_failed_checks", "Answers withheld because they break a law of mechanics.", ("operation", "law"),
+            registry=registry,
+        )  # fmt: skip
         self.samples = Counter("polhode_samples", "Numbers in arrays of large answers.", registry=registry)
         self.job_seconds = Histogram(
             "polhode_job_seconds", "Time of questions in compute processes.", buckets=_SECONDS, registry=registry

@@ -32,8 +32,10 @@ class Records:
             return given
         return b"%b-%x" % (self._prefix, next(self._numbers))
 
-    def finished(self, identity: bytes, operation: str, method: str, status: int, seconds: float) -> None:
-        """Count a request, and log it if such requests are."""
+    def finished(
+        self, identity: bytes, operation: str, method: str, status: int, seconds: float, key: str | None = None
+    ) -> None:
+        """Count a request, and log it if such requests are, with the name of the key that it came with."""
         self._observe((operation, status), seconds)
         if status >= self._log_from:
             LOG.log(
@@ -45,5 +47,6 @@ class Records:
                     "method": method,
                     "status": status,
                     "milliseconds": round(1e3 * seconds, 3),
+                    **({} if key is None else {"key": key}),
                 },
             )

@@ -37,18 +37,20 @@ async def test_an_answer_that_fails_its_check_is_withheld_and_its_request_kept(
         assert orjson.loads(kept.read_bytes()) == WRONG
         (record,) = [one for one in caplog.records if one.message == "answer withheld"]
         assert vars(record)["check_law"] == "energy"
-        assert 'polhode_problems_total{code="self-check-failed"} 1.0' in (await client.get("/metrics")).text
+        counted = (await client.get("/metrics")).text
+        assert 'polhode_problems_total{code="self-check-failed"} 1.0' in counted
+        assert 'polhode_failed_checks_total{law="energy",operation="ask_toy"} 1.0' in counted
 
 
 async def test_other_problems_leave_nothing(tmp_path: Path) -> None:
-    FailedChecks(str(tmp_path)).record("a", "b", b"{}", Problem(REGISTRY["invalid-parameter"], "bad"))
+    FailedChecks(str(tmp_path), Metrics()).record("a", "b", b"{}", Problem(REGISTRY["invalid-parameter"], "bad"))
     assert not list(tmp_path.iterdir())
 
 
 async def test_a_folder_that_cannot_be_written_is_logged(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("")
-    FailedChecks(str(blocked)).record("a", "b", b"{}", Problem(REGISTRY["self-check-failed"], "bad"))
+    FailedChecks(str(blocked), Metrics()).record("a", "b", b"{}", Problem(REGISTRY["self-check-failed"], "bad"))
     assert any(one.message == "a request cannot be kept" for one in caplog.records)
 
 

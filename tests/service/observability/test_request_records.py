@@ -38,3 +38,12 @@ def test_the_requests_that_are_to_be_logged_are(
     for status in (200, 404, 500):
         assert f'polhode_request_seconds_count{{operation="ask_toy",status="{status}"}} 1.0' in text
         assert f'polhode_request_seconds_sum{{operation="ask_toy",status="{status}"}} 0.25' in text
+
+
+def test_the_key_is_named_where_there_is_one(caplog: pytest.LogCaptureFixture) -> None:
+    records = Records(Metrics(), "all")
+    with caplog.at_level(logging.INFO, "polhode"):
+        records.finished(b"abc", "ask_toy", "POST", 200, 0.25, "laboratory")
+        records.finished(b"abc", "ask_toy", "POST", 200, 0.25)
+    assert [record.__dict__.get("key") for record in caplog.records] == ["laboratory", None]
+    assert not hasattr(caplog.records[1], "key")
