@@ -140,7 +140,7 @@ class Service(FastAPI):
 
     @contextlib.asynccontextmanager
     async def lifespan(self, app: Any = None) -> AsyncIterator[None]:
-        """Get ready in the background, while health is already answered; stop the compute processes at the end."""
+        """Get ready, in one server process while health is already answered; stop the compute processes at the end."""
         if not LOG.hasHandlers():
             # Servers configure their own logging, not that of an application.
             configure(self.settings.log_level)
@@ -151,6 +151,10 @@ class Service(FastAPI):
         tasks = [asyncio.create_task(work) for work in kept_up]
         end_with_supervisor()
         try:
+            if self.settings.workers > 1:
+                # Connections that this process does not accept yet are accepted by the others: whichever answers a
+                # request is ready.
+                await tasks[0]
             yield
         finally:
             self.warm = False

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from queue import Empty, SimpleQueue
@@ -26,8 +26,8 @@ from service.studies.cluster import Cluster
 from service.studies.store import Store, reason_of
 from service.studies.study import FAILED
 from service.studies.summary import summary
-from service.studies.task import Computed, compute, end_process, without_answer
-from service.studies.unfinished_study import CHUNK_SECONDS, Stretch, UnfinishedStudy, gaps, stretch_seconds
+from service.studies.task import Computed, compute, end_process, trial, without_answer
+from service.studies.unfinished_study import CHUNK_SECONDS, TRIAL, Stretch, UnfinishedStudy, gaps, stretch_seconds
 
 AHEAD = 2
 """Stretches that each process of the cluster is given at a time, so that none waits for work."""
@@ -104,7 +104,8 @@ class Engine:
                 stored = self._store.chunks(identity)
                 each = max(study.plan["seconds"] / study.count, FASTEST)
                 missing = deque(gaps(stored, study.count))
-                self._unfinished[identity] = UnfinishedStudy(study, missing, each, self._store.request(identity))
+                request = self._store.request(identity)
+                self._unfinished[identity] = UnfinishedStudy(study, missing, each, request, tried=bool(stored))
                 self._store.begin(identity)
                 LOG.info("a study is worked on", extra={"study": identity, "members": study.count, "done": study.done})
 
@@ -145,8 +146,12 @@ class Engine:
         if self._alone and busy:
             return
         self._alone = False
+        for unfinished in self._unfinished.values():
+            if not unfinished.tried:
+                unfinished.tried = True
+                self._hand(unfinished, TRIAL, trial, self._longest)
         for _ in range(AHEAD * self._processes - busy):
-            waiting = [unfinished for unfinished in self._unfinished.values() if unfinished.missing]
+            waiting = [one for one in self._unfinished.values() if one.missing]
             if not waiting:
                 return
             unfinished = min(waiting, key=lambda one: len(one.in_flight))
@@ -155,7 +160,12 @@ class Engine:
     def _submit(self, unfinished: UnfinishedStudy, stretch: Stretch) -> None:
         # A process that others hold up comes back in time nevertheless.
         longest = 2.0 * stretch_seconds(self._processes)
-        future = self._cluster.client.submit(compute, self._terms, unfinished.request, *stretch, longest, pure=False)
+        self._hand(unfinished, stretch, compute, *stretch, longest)
+
+    def _hand(
+        self, unfinished: UnfinishedStudy, stretch: Stretch, work: Callable[..., object], *arguments: float
+    ) -> None:
+        future = self._cluster.client.submit(work, self._terms, unfinished.request, *arguments, pure=False)
         unfinished.in_flight[future] = stretch, time.monotonic()
         future.add_done_callback(self._done.put)
 
@@ -181,9 +191,15 @@ class Engine:
                 found = future.result(timeout=GATHERING)
             except Exception:
                 # The scheduler has gone, or the process that had the result.
-                unfinished.missing.appendleft(stretch)
+                if stretch == TRIAL:
+                    unfinished.tried = False
+                else:
+                    unfinished.missing.appendleft(stretch)
                 return
-            self._keep(unfinished, stretch, found)
+            if stretch != TRIAL:
+                self._keep(unfinished, stretch, found)
+            elif found:
+                self._fail(unfinished, f"nearly all members are refused: {found}")
             return
         fault = future.exception()
         if isinstance(fault, KilledWorker):
@@ -194,6 +210,9 @@ class Engine:
 
     def _after_death(self, unfinished: UnfinishedStudy, stretch: Stretch, code: str) -> None:
         start, stop = stretch
+        if stretch == TRIAL:
+            # Which of its members it was, and whether others have answers, the stretches show.
+            return
         unfinished.ended += 1
         if unfinished.ended > MOST_ENDED:
             self._fail(unfinished, f"its members ended {unfinished.ended} processes")

@@ -55,6 +55,12 @@ def compute(terms: Terms, request: bytes, start: int, stop: int, seconds: float 
     return _computed(members.block(start, stop, seconds), since)
 
 
+def trial(terms: Terms, request: bytes, seconds: float) -> str:
+    """Return why no member of a sample has an answer, empty if one has; see `Members.trial`."""
+    reasons: str = opened(terms, request).trial(seconds)
+    return reasons
+
+
 def without_answer(terms: Terms, request: bytes, member: int, code: str) -> Computed:
     """Return the result of a member that no process could answer."""
     return _computed(opened(terms, request).failed(member, member + 1, code), time.thread_time())

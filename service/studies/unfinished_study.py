@@ -24,6 +24,9 @@ LARGEST_CHUNK = 100_000
 
 Stretch = tuple[int, int]
 
+TRIAL: Stretch = (0, 0)
+"""Stands for the sample of members that is tried first, whose results are not stored."""
+
 
 @dataclass(eq=False)
 class UnfinishedStudy:
@@ -38,6 +41,8 @@ class UnfinishedStudy:
         Stretches that are to be tried alone.
     deaths : mapping
         How many processes a stretch has ended while it was alone.
+    tried : bool
+        Whether a sample of the members has been handed over, which is done first.
     ended : int
         How many processes the study has ended.
     each : float
@@ -55,12 +60,13 @@ class UnfinishedStudy:
     in_flight: dict[Any, tuple[Stretch, float]] = field(default_factory=dict)
     suspects: deque[Stretch] = field(default_factory=deque)
     deaths: dict[Stretch, int] = field(default_factory=dict)
+    tried: bool = False
     ended: int = 0
 
     @property
     def done(self) -> bool:
         """Whether nothing is left to be computed."""
-        return not (self.missing or self.suspects or self.in_flight)
+        return self.tried and not (self.missing or self.suspects or self.in_flight)
 
     def next_stretch(self, processes: int) -> Stretch:
         """Take a stretch of about `stretch_seconds`, less where otherwise some processes would have none."""

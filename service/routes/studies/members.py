@@ -35,6 +35,15 @@ BYTES_OF_A_FILE = 4096
 FILES_PER_SECOND = 4
 """Stretches of members have half a second, unless they are the last."""
 
+TRIED = 64
+"""Members of the sample that is tried before a study is worked on."""
+
+GOLDEN = 0.6180339887498949
+"""The golden ratio less 1, whose multiples modulo 1 are spread most evenly."""
+
+LONGEST_DETAIL = 300
+"""Characters of a problem's detail that are repeated in the state of a study."""
+
 Labels = NDArray[np.uint16]
 
 
@@ -75,6 +84,13 @@ class Block:
             "failure_names": list(self.failure_names),
             "warning_names": list(self.warning_names),
         }
+
+
+class Reason(NamedTuple):
+    """Why a member has no answer: the code and the detail of its problem."""
+
+    code: str
+    detail: str
 
 
 class _Names:
@@ -170,8 +186,8 @@ class Members:
             if k and perf_counter() > until:
                 return k
             answer = self._answered(rows.numbers[k].tolist())
-            if isinstance(answer, str):
-                rows.failures[k] = rows.failed.label((answer,))
+            if isinstance(answer, Reason):
+                rows.failures[k] = rows.failed.label((answer.code,))
                 continue
             row = [_figure(answer, path) for path in self._figures]
             if not all(value is None or isfinite(value) for value in row):
@@ -210,18 +226,52 @@ class Members:
             changes |= dict.fromkeys(places, entry.value(number))
         return json.dumps(changed(self._request, changes))
 
-    def _answered(self, numbers: Sequence[float]) -> Answer | str:
-        """Return a member's answer, or the code of its problem."""
+    def _answered(self, numbers: Sequence[float]) -> Answer | Reason:
+        """Return a member's answer, or why there is none."""
         try:
             return self._source.answer(self._document(numbers))
         except Refused as refused:
-            return refused.refusal.problem.type.code
+            return Reason(refused.refusal.problem.type.code, str(refused.refusal.problem.detail))
         except MechanicsError as error:
-            return code_of(error)
+            return Reason(code_of(error), str(error))
         except MemoryError:
-            return NO_ROOM
+            return Reason(NO_ROOM, "the process lacks the memory for its answer")
         except Exception:
-            return FAULT
+            return Reason(FAULT, "the service failed")
+
+    def trial(self, seconds: float) -> str:
+        """Return why no member of a sample has an answer: for each code the number of members and one of them.
+
+        Empty if a member has an answer, which ends the trial, or if time runs out. If one member in 20 of the study has
+        an answer, all of the sample are refused with a probability of 4 %; if one in ten has, of 0.1 %.
+
+        Parameters
+        ----------
+        seconds : float
+            Time after which no further member is begun.
+        """
+        until = perf_counter() + seconds
+        count: int = self.design.members
+        reasons: dict[str, list[tuple[int, str]]] = {}
+        # Multiples of an irrational number: evenly spaced members could all have the same value of an inner input.
+        sample = sorted({int(count * (k * GOLDEN % 1.0)) for k in range(TRIED)}) if count > TRIED else range(count)
+        for member in sample:
+            if perf_counter() > until:
+                return ""
+            answer = self._answered(self.design.numbers(member, member + 1)[0].tolist())
+            if not isinstance(answer, Reason):
+                return ""
+            reasons.setdefault(answer.code, []).append((member, answer.detail))
+        return "; ".join(
+            f"{len(members)} of {len(sample)} members tried: {code}, such as member {members[0][0]}: "
+            f"{shortened(members[0][1])}"
+            for code, members in sorted(reasons.items(), key=lambda entry: -len(entry[1]))
+        )
+
+
+def shortened(detail: str) -> str:
+    """Return a detail, or its beginning where it is long."""
+    return detail if len(detail) <= LONGEST_DETAIL else f"{detail[:LONGEST_DETAIL]}..."
 
 
 def number_of(value: Any) -> float | None:

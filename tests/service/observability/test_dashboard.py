@@ -40,6 +40,7 @@ def exported() -> dict[str, set[str]]:
     for counter in (metrics.long_inline, metrics.handed_over):
         counter.labels("a").inc()
     metrics.failed_checks.labels("a", "energy").inc()
+    metrics.used_seconds.labels("a").inc()
     return {sample.name: {*sample.labels} for family in metrics.registry.collect() for sample in family.samples}
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.studies.study import DISMISSED, SUCCESSFUL
+from service.studies.study import DISMISSED, FAILED, SUCCESSFUL
 from service.studies.task import compute
 from tests.service.studies.conftest import TERMS, UNIFORM, Desk, sleeping
 from tests.service.toy_routes import GOOD
@@ -203,3 +203,55 @@ def test_what_is_computed_is_a_function_of_its_arguments() -> None:
 
     body = json.dumps(UNIFORM).encode()
     assert compute(TERMS, body, 3, 40).data == compute(TERMS, body, 3, 40).data
+
+
+def product(pointer: str, values: list[Any], request: dict[str, Any]) -> dict[str, Any]:
+    study = UNIFORM | {"vary": [{"pointer": pointer, "values": values}], "design": "product"}
+    study["question"] = {"path": "/v1/toy", "request": request}
+    del study["count"], study["seed"]
+    return study
+
+
+def test_a_study_of_which_all_members_are_refused_has_failed_with_the_reasons(desk_on: Desks, in_process: str) -> None:
+    desk = desk_on(in_process)
+    identity = desk.submit(product("/body/moments/2", [7.0, 7.0, 7.0, -1.0], GOOD))
+    desk.work()
+    study = desk.study(identity)
+    assert study.status == FAILED
+    assert study.message.startswith("nearly all members are refused: 3 of 4 members tried: unphysical-inertia, such as")
+    assert "member 0: " in study.message
+    assert "; 1 of 4 members tried: invalid-parameter, such as member 3: " in study.message
+
+
+def test_the_rest_of_a_study_whose_members_are_refused_is_not_computed(desk_on: Desks, in_process: str) -> None:
+    desk = desk_on(in_process)
+    study = UNIFORM | {"question": {"path": "/v1/toy", "request": GOOD | {"angular_velocity": [0, 0, "x"]}}}
+    identity = desk.submit(study | {"count": 1_000_000}, 0.01)
+    desk.work()
+    assert desk.study(identity).status == FAILED
+    assert "64 of 64 members tried: invalid-parameter" in desk.study(identity).message
+    assert desk.study(identity).done < 1000
+
+
+def test_one_member_with_an_answer_is_enough(desk_on: Desks, in_process: str) -> None:
+    desk = desk_on(in_process)
+    identity = desk.submit(product("/body/moments/2", [7.0, 7.0, 7.0, 3.0], GOOD))
+    desk.work()
+    assert (desk.study(identity).status, desk.study(identity).failed) == (SUCCESSFUL, 3)
+
+
+def test_the_sample_does_not_have_one_value_of_an_inner_input(desk_on: Desks, in_process: str) -> None:
+    """Of 64 times 10 members in row order, every tenth is refused no more than the others."""
+    desk = desk_on(in_process)
+    study = product("/body/moments/2", [7.0] * 9 + [3.0], GOOD)
+    study["vary"].insert(0, {"pointer": "/angular_velocity/1", "min": 0.1, "max": 1.0, "count": 64})
+    identity = desk.submit(study)
+    desk.work()
+    assert (desk.study(identity).status, desk.study(identity).failed) == (SUCCESSFUL, 576)
+
+
+def test_a_sample_that_ends_its_process_decides_nothing(desk_on: Desks, processes: str) -> None:
+    desk = desk_on(processes)
+    identity = desk.submit(product("/behaviour", ["die", "well"], GOOD | {"behaviour": "well"}), 0.01)
+    desk.work()
+    assert (desk.study(identity).status, desk.study(identity).failed) == (SUCCESSFUL, 1)
