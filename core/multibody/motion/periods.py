@@ -40,6 +40,7 @@ UNCERTAIN = 2.0**-54
 """Share of a period by which two runs may differ: beside a separatrix what brings a motion back is rounding."""
 
 _PARTS = 4
+"""Nodes to a step of the series."""
 
 
 @dataclass

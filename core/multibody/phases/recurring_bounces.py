@@ -32,6 +32,8 @@ SHORT = 2.0**-30
 LISTED, LATER_LISTED = 12, 3
 """Bounces of one contact that are listed before the rest is summed up: at first; after `MANY` events, or if small."""
 MANY = 60
+"""Events of a motion after which fewer bounces are listed."""
+
 SMALL = 2.0**-20
 """Share of the largest rate below which bounces are small."""
 

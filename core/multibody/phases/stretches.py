@@ -33,6 +33,7 @@ MOST_ARCS = 2000
 _GONE = 2.0**-60
 """Share of the first of them below which a bounce is nothing."""
 _ROUNDED = 2.0**-51
+"""Rounding of a state in doubles, as a share of its size: two units in the last place."""
 
 
 @dataclass(frozen=True)

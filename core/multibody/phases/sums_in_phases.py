@@ -29,7 +29,11 @@ from core.multibody.trajectory.integrals import integrated
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
+"""Rounding of a sum in doubles, as a share of its largest term: four units in the last place."""
+
 _MARGIN = 4.0
+"""Factor on the difference from the reference, which has an error of its own."""
+
 FRICTION, IMPACTS = "friction.work", "impacts.work"
 
 Power = Callable[[State], tuple[Floats, Floats]]

@@ -38,7 +38,11 @@ from core.multibody.table.table import Row, Table, identity
 ENDED = 2.0**-72
 """Share of the largest rate below which slip ends."""
 _BITS = 256
+"""Precision of the series: more than twice that of pairs, in which its states are stated."""
+
 _MOST_STEPS = 250
+"""Steps that one phase of turning slip may take."""
+
 _PART, _LONGEST = 0.5, 1e6
 _KINDS = {"fine": (32, 2.0**-96), "check": (30, 2.0**-90)}
 """Order and tolerance of the two runs."""
