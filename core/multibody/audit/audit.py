@@ -23,6 +23,7 @@ from core.multibody.audit.claims import check_claims
 from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.energy import Energies
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
+from core.multibody.audit.impacts import Impacts
 from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, moved
@@ -158,6 +159,10 @@ class _Audit:
             first = 1 + len(asked.halves) * NODES
             later = samples.at(slice(first, first + asked.repeated))
             check_repetition(ledger, description, answer, start, later)
+        if asked.impacts is not None:
+            first = 1 + len(asked.halves) * NODES + asked.repeated
+            struck = samples.at(slice(first, first + len(asked.impacts.times)))
+            asked.impacts.check(ledger, description, freedoms, struck)
         check_claims(ledger, answer, samples, None if after is None else after.gains)
         if _spun(description, samples):
             self._check_energy(ledger, samples)
@@ -186,23 +191,27 @@ class _Audit:
         """
         try:
             placed: list[tuple[float, float]] = []
-            searches, repeated = None, np.zeros(0)
+            searches, impacts, repeated, struck = None, None, np.zeros(0), np.zeros(0)
             if self.own and self.end > self.begin:
                 rated = self.own_samples
                 if rated is None:
                     rated = samples_of(self.description, np.zeros(1), sampler(np.zeros(1)), slice(None))
-                placed = windows(self.random, self.answer, self.begin, self.end, quickness(self.description, rated))
+                quick = quickness(self.description, rated)
+                placed = windows(self.random, self.answer, self.begin, self.end, quick)
+                if any(event.impulses for event in self.answer.events):
+                    impacts = Impacts(self.answer, self.random, quick, self.end)
+                    struck = impacts.times
                 if self.answer.occurrences or self.answer.extremes:
                     ended = self.answer.ended
                     searches = Searches(self.answer, self.random, self.latest if ended is None else ended.time)
             if self.own:
                 repeated = times_of_period(self.answer)
             found = np.zeros(0) if searches is None else searches.times
-            asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), repeated, found])
+            asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), repeated, struck, found])
             columns = sampler(asked)
             rows = slice(0, len(asked) - len(found))
             samples = samples_of(self.description, asked, columns, rows)
-            return _Asked(samples, columns, [half for _, half in placed], len(repeated), searches)
+            return _Asked(samples, columns, [half for _, half in placed], len(repeated), impacts, searches)
         except MechanicsError:
             return None
 
@@ -221,6 +230,8 @@ class _Asked:
         Half of the widths of the windows (s).
     repeated : int
         How many samples belong to the period.
+    impacts : Impacts or None
+        Its samples are behind those of the period.
     searches : Searches or None
     """
 
@@ -228,6 +239,7 @@ class _Asked:
     columns: Columns
     halves: list[float]
     repeated: int
+    impacts: Impacts | None
     searches: Searches | None
 
 

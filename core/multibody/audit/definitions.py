@@ -7,7 +7,7 @@ nothing with the table of equations that answers are computed by.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -55,6 +55,12 @@ class Description:
     def extent(self) -> float:
         """The same, or the largest size of a connection: what a place is known beside (m)."""
         return max(self.places, *(connection.reach + connection.arm for connection in self.connections), 0.0)
+
+    @property
+    def impulsive(self) -> Description:
+        """What is left of it in no time: bodies and connections, without gravity and what acts by a law alone."""
+        own = tuple(connection for connection in self.connections if not connection.loads)
+        return replace(self, gravity=(0.0,) * self.dimension, connections=own)
 
     @property
     def moderate(self) -> bool:

@@ -1,0 +1,69 @@
+"""Wrong impacts are refused: impulses, losses of energy, and rates of gaps that are not those of the restitution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.systems.trajectory import MotionEvent
+from tests.core.multibody.audit.spoiled import Audited, another, answered, description_of
+
+STRUCK = ("dumbbell-dropped", "ball-on-ball-dropped", "spinning-disc-bounces", "cradle-of-two", "weight-lands")
+TIMES = np.linspace(0.0, 2.0, 5)
+
+
+@cache
+def right(scene: str) -> Audited:
+    return answered(description_of(scene), TIMES)
+
+
+def with_events(one: Audited, change: Callable[[MotionEvent], MotionEvent]) -> Audited:
+    """Return an answer all impacts of which are changed."""
+    events = tuple(change(event) if event.impulses else event for event in one.answer.events)
+    return replace(one, answer=replace(one.answer, events=events))
+
+
+def scaled(name: str, factor: float) -> Callable[[MotionEvent], MotionEvent]:
+    def change(event: MotionEvent) -> MotionEvent:
+        impulses = {key: value * factor if key == name else value for key, value in event.impulses.items()}
+        return replace(event, impulses=impulses)
+
+    return change
+
+
+SPOILED: dict[str, Callable[[MotionEvent], MotionEvent]] = {
+    "impulses are too large": scaled("normal", 1.0 + 1e-5),
+    "impulses have the wrong sign": scaled("normal", -1.0),
+    "nothing is pushed": scaled("normal", 0.0),
+    "energy is lost twice": lambda event: replace(event, energy_loss=2.0 * event.energy_loss + 1e-3),
+    "energy is gained": lambda event: replace(event, energy_loss=-event.energy_loss - 1e-3),
+}
+
+
+@pytest.mark.parametrize("kind", SPOILED)
+def test_a_wrong_impact_is_refused(kind: str) -> None:
+    for scene in STRUCK:
+        one = right(scene)
+        assert any(event.impulses for event in one.answer.events), scene
+        assert one.failure() is None, scene
+        assert with_events(one, SPOILED[kind]).failure() is not None, scene
+
+
+def test_another_restitution_is_refused() -> None:
+    description: dict[str, Any] = {
+        "gravity": [0, -10],
+        "bodies": {"ball": {"mass": 1, "at": [0, 1.25]}},
+        "connections": [{"kind": "contact", "place": "ball", "on": {"at": [0, 0]}, "restitution": 0.75}],
+    }
+    other = another(description, "restitution")
+    assert other is not None
+    one, wrong = answered(description, [0.0, 0.3, 0.7]), answered(other, [0.0, 0.3, 0.7])
+    assert one.failure() is None
+    failure = Audited(one.scene, wrong.answer, wrong.sampler, one.times).failure()
+    assert failure is not None
+    assert failure.law == "restitution"
