@@ -163,7 +163,7 @@ class _Audit:
             first = 1 + len(asked.halves) * NODES + asked.repeated
             struck = samples.at(slice(first, first + len(asked.impacts.times)))
             asked.impacts.check(ledger, description, freedoms, struck)
-        check_claims(ledger, answer, samples, None if after is None else after.gains)
+        check_claims(ledger, answer, samples, None if after is None else after.gains, sizes.typical())
         if _spun(description, samples):
             self._check_energy(ledger, samples)
 

@@ -13,6 +13,9 @@ from core.multibody.audit.samples import Samples
 ROUNDING = 2.0**-45
 """Share of its terms to which a residual is known that is formed of a few dozen doubles, each rounded."""
 
+NOISE = 2.0**-100
+"""Share of the largest forces and places to which what vanishes is solved for: in pairs of doubles."""
+
 MARGIN = 2.0
 """Times what the stated errors of the inputs change a residual by, to first order."""
 

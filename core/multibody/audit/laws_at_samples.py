@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from math import hypot
+from math import hypot, sqrt
 
 import numpy as np
 
@@ -57,6 +57,8 @@ class Sizes:
         Largest speed (m/s).
     extent : float
         Largest component of a place, or size of a connection (m).
+    mass : float
+        Of all (kg).
     force : ndarray, shape (n,)
         N.
     """
@@ -74,9 +76,16 @@ class Sizes:
             *self.place.values(), *(connection.arm + connection.reach for connection in description.connections), 0.0
         )
         mass = sum(body.mass for body in description.bodies.values()) + sum(one.mass for one in description.connections)
+        self.mass = mass
         self.force = np.full(samples.times.shape, mass * hypot(*description.gravity))
         if samples.forces:
             self.force += np.nan_to_num(np.fmax.reduce([np.abs(force) for force in samples.forces.values()]))
+
+    def typical(self) -> tuple[float, float]:
+        """Return a speed and a spin that the forces would make (m/s, rad/s)."""
+        extent = self.extent if self.extent > 0.0 else 1.0
+        gain = float(self.force.max()) / self.mass if self.mass > 0.0 else 0.0
+        return self.fastest + sqrt(gain * extent), self.fastest / extent + sqrt(gain / extent)
 
     def of(self, connection: Definition) -> tuple[float, float]:
         """Return how large the places and the rates are that the measures of a connection are formed of (m, m/s)."""

@@ -17,16 +17,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from core.multibody.audit.definitions import Description
-from core.multibody.audit.failure import ROUNDING, Ledger
+from core.multibody.audit.failure import NOISE, ROUNDING, Ledger
 from core.multibody.audit.newton import Acceleration, Freedoms
 from core.multibody.audit.placement import STEP, Numbers, Placement, Twist, cross
 from core.multibody.audit.samples import ATTITUDE, POSITION, SPIN, VELOCITY, Samples, axis_of_top
 
 NODES = 7
 """Samples of a window: with some seventh of a radian of motion in it, the eighth term is below 1e-12 of the first."""
-
-NOISE = 2.0**-100
-"""Share of the largest forces and places to which what vanishes is solved for: in pairs of doubles."""
 
 SLOWEST = 0.05
 """Decay of the coefficients, two terms on, above which the terms that are left out are not known to be smaller."""

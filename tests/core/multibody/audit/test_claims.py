@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from tests.core.multibody.audit.spoiled import Audited, answered, description_of
@@ -38,6 +39,14 @@ def test_what_is_accelerated_is_not_at_rest(scene: str) -> None:
     assert right(scene).failure() is None
     if not right(scene).answer.phases:
         assert claimed(right(scene), "rest").failure() is not None
+
+
+def test_what_comes_to_rest_on_three_rough_places_is_known_to_rounding_of_its_speed() -> None:
+    places = {"l": [-0.5, 0], "m": [0, 0], "r": [0.5, 0]}
+    bar = {"mass": 1, "inertia": 0.1, "at": [0, 0], "velocity": [1, 0], "places": places}
+    contacts = [{"kind": "contact", "place": f"b.{p}", "on": {"at": [0, 0]}, "friction": 0.3} for p in places]
+    one = answered({"gravity": [0, -10], "bodies": {"b": bar}, "connections": contacts}, np.array([1.0]))
+    assert one.failure() is None
 
 
 def test_a_wrong_angle_of_precession_is_refused() -> None:
