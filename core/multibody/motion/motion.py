@@ -66,7 +66,9 @@ class Motion(Protocol):
         """Return the states at times of shape (t,), finer ones where there is a choice."""
 
     def nodes(self, end: float) -> Floats:
-        """Return times between 0 and `end`, or over one period, so close that nothing turns twice between two of them.
+        """Return times between 0 and `end`, or over one period, between which no direction turns by half a turn.
+
+        They serve to count the turns of an angle.
 
         Raises
         ------
