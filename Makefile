@@ -152,6 +152,18 @@ FUZZ ?= 2000
 # Seconds of load and faults.
 SOAK ?= 300
 
+# What hostile clients and users of the machine have tried: docs/deployment.md has the table. On the loopback interface alone.
+ATTACKS := tests/service/test_server.py tests/service/test_fuzz.py tests/service/http/test_raw_streams.py \
+	tests/service/test_slow_readers.py tests/service/http/test_limits.py tests/service/http/test_keys.py \
+	tests/service/http/test_compression.py tests/service/test_event_loop.py tests/service/test_nginx.py \
+	tests/service/studies/test_cluster.py tests/service/studies/test_engine.py tests/service/studies/test_resources.py \
+	tests/clients/test_learning_platforms.py
+
+.PHONY: attacks
+
+attacks: kernels
+	timeout 1800 $(BIN)/python -m pytest -q $(ATTACKS)
+
 .PHONY: fuzz fuzz-loop schemathesis soak scheduling health calibration image dial studies
 
 fuzz: environment
