@@ -51,11 +51,11 @@ def states_in(phase: Phase, times: Times, *, finer: bool = False) -> WholeStates
         return _bouncing(phase, times)
     found = [_of_track(phase, k, times, finer=finer) for k in range(len(phase.tracks))]
     first = found[0]
-    # Pairs of doubles know no state better, also one that balls know exactly.
-    floor_q, floor_v = (
-        FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
-    )
-    q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
+    sizes = np.abs(first.q[..., 0]), np.abs(first.v[..., 0])
+    if not is_zero(phase.start):
+        # At the start pairs of doubles know every coordinate to a share of itself, after events to one of the largest.
+        sizes = sizes[0].max(axis=1, initial=0.0, keepdims=True), sizes[1].max(axis=1, initial=0.0, keepdims=True)
+    q_error, v_error = first.q_error + FLOOR * sizes[0], first.v_error + FLOOR * sizes[1]
     unknown = _unknown(phase, times)
     if unknown is not None:
         q_error, v_error = q_error + unknown[0], v_error + unknown[1]
