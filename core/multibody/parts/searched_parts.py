@@ -48,7 +48,8 @@ def joined_searches(
         part = part_of(search.quantity, parts)
         assert part is not None, "a scene of which a whole is searched is not answered by parts"
         if isinstance(search, ExtremesOf):
-            extremes.append(ranges[part].pop(0))
+            # What ends at its start has none.
+            extremes += [ranges[part].pop(0)] if ranges[part] else []
         else:
             occurrences.extend(of_search(search, times[part]))
     return tuple(occurrences), tuple(extremes)

@@ -174,8 +174,10 @@ def test_what_is_undecided_in_a_part_at_the_start_ends_the_motion_there() -> Non
         },
         "connections": [{"kind": "contact", "name": "cb", "place": "chalk.tip", "on": {"at": [0, 0]}, "friction": 3}],
     }  # fmt: skip
-    alone, beside = (solve_scene(scene(*parts), [0.0, 1.0]) for parts in ((chalk,), (PENDULUM, chalk)))
+    asked = ("trajectory", When("chalk.position.x", 0.0), ExtremesOf("chalk.velocity.x"))
+    alone, beside = (solve_scene(scene(*parts), [0.0, 1.0], asked) for parts in ((chalk,), (PENDULUM, chalk)))
     assert alone.problem is not None
+    assert (alone.occurrences, alone.extremes) == (beside.occurrences, beside.extremes) == ((), ())
     assert (beside.problem, beside.ended, beside.phases) == (alone.problem, alone.ended, ())
     assert beside.model.name == alone.model.name == "undecided"
 
