@@ -105,7 +105,7 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
         UndecidedKind(
             "several-onsets",
             "Several contacts begin to slide at once in space",
-            "Their directions follow from one another, and are not looked for.",
+            "Their directions follow from one another, and are not found.",
             of_mechanics=False,
         ),
         UndecidedKind(

@@ -11,15 +11,22 @@ de glissement", Comptes rendus 121 (1895).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
-from core.multibody.algebra.polynomials import Ball, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.contacts.conditions_of_states import Situation, conditions_of, lasts, moves_as, same_motion
 from core.multibody.contacts.contact_forces import Balance, balanced
 from core.multibody.contacts.contact_responses import gap_rate, require_few, responses, slip_rate
 from core.multibody.contacts.contact_states import Problem, State, phase_table, sticks_more
-from core.multibody.contacts.slip_directions import Direction, along_slip, directions, turned
+from core.multibody.contacts.slip_directions import (
+    AHEAD,
+    Direction,
+    along_slip,
+    directions,
+    directions_together,
+    turned,
+)
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.table import Table
 
@@ -120,10 +127,9 @@ def _decided_group(at: Situation, group: Sequence[int], settled: Sequence[State]
         if any(sticks_more(other.states, states) for other in consistent):
             continue
         onsets = [i for i, state in zip(group, states, strict=True) if at.begins_somewhere(i, state)]
-        if len(onsets) > 1:
-            several = True
-            continue
-        for ways in _onsets(at, group, states, onsets):
+        found = _onsets(at, group, states, onsets)
+        several = several or found is None
+        for ways in found or ():
             balance = balanced(at.unilateral, group, states, at.found, ways)
             if balance is not None and lasts(at, group, settled, balance):
                 consistent.append(balance)
@@ -131,7 +137,7 @@ def _decided_group(at: Situation, group: Sequence[int], settled: Sequence[State]
         return Problem(
             "several-onsets",
             "several contacts would begin to slide at once in space: the directions in which they do follow from one "
-            "another, and are not looked for",
+            "another, and are not found",
             names,
             decided_by="velocities with which they slide already",
         )
@@ -197,20 +203,29 @@ def _agree(first: State, second: State, sense: int) -> bool:
 
 def _onsets(
     at: Situation, group: Sequence[int], states: Sequence[State], onsets: Sequence[int]
-) -> list[dict[int, Direction]]:
-    """Return the directions in which contacts may begin to slide in space; nothing is to be found where none does."""
+) -> list[dict[int, Direction]] | None:
+    """Return the directions in which contacts may begin to slide in space; None where several are not found."""
     if not onsets:
         return [{}]
-    (i,) = onsets
 
-    def after(direction: Direction) -> Direction | None:
-        balance = balanced(at.unilateral, group, states, at.found, {i: direction}, shared=False)
+    def after(assumed: Sequence[Direction], measures: Sequence[Unilateral] = at.unilateral) -> list[Direction] | None:
+        ways = dict(zip(onsets, assumed, strict=True))
+        balance = balanced(measures, group, states, at.found, ways, shared=False)
         if balance is None:
             return None
-        along, across = (at.found.along(balance.forces, line) for line in at.found.grip(i))
-        return along, across
+        lines = [at.found.grip(i) for i in onsets]
+        return [(at.found.along(balance.forces, x), at.found.along(balance.forces, y)) for x, y in lines]
 
-    return [{i: direction} for direction in directions(after)]
+    def follows(way: Direction) -> Direction | None:
+        slips = after([way])
+        return None if slips is None else slips[0]
+
+    if len(onsets) == 1:
+        return [{onsets[0]: way} for way in directions(follows)]
+    smooth = [replace(one, kinetic=ZERO) if i in onsets else one for i, one in enumerate(at.unilateral)]
+    first = after([AHEAD] * len(onsets), smooth)
+    together = directions_together(first, after) if first else []
+    return None if together is None else [dict(zip(onsets, together, strict=True))] if together else []
 
 
 def _in_words(states: Sequence[State]) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import cos, pi, sin
 
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx
 
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, LinearForm, combined, is_zero
 from core.multibody.contacts.contact_responses import across_rate, slip_rate
@@ -19,6 +19,8 @@ from core.multibody.table.connection_effects import Unilateral
 
 Direction = tuple[Ball, Ball]
 """Cosine and sine of the angle with the first direction of slip."""
+Slips = Sequence[Direction]
+"""Directions of several contacts, or slips by their components."""
 
 AHEAD: Direction = (ONE, ZERO)
 """The direction of the slip itself, in axes along it."""
@@ -27,6 +29,12 @@ _DIRECTIONS_TRIED = 48
 """Directions that are tried, evenly around."""
 _MOST_CUTS = 100
 """Cuts between two samples: digits grow by a factor of 1.44 with each of them, so that some dozen reach 320 bits."""
+
+_TURNS = 4
+"""Times that directions of several contacts are turned into those that follow, before Newton's method: where all places
+translate, the first time is exact; elsewhere they come near enough for it."""
+_MOST_STEPS = 24
+"""Turns and steps of Newton's method: its digits double, so that a dozen steps reach 1280 bits."""
 
 _GUARD_OF_AN_ANGLE = 40
 """Bits to which the angle found is not trusted."""
@@ -66,10 +74,7 @@ def along_slip(
         s, c = across_rate(one, q, v), slip_rate(one, q, v)
         if is_zero(s) and (is_zero(c) or c > 0):
             continue
-        # The width to which rates are known is no width of the direction: that is a choice.
-        x, y = arb(c.mid()), arb(s.mid())
-        size = (x * x + y * y).sqrt()
-        found[i] = turned(one, (x / size, y / size))
+        found[i] = turned(one, _unit(c, s))
     return found
 
 
@@ -106,6 +111,77 @@ def directions(after: Callable[[Direction], Direction | None]) -> list[Direction
         if there is not None and there[0] * root[0] + there[1] * root[1] > 0:
             found.append(root)
     return found
+
+
+def directions_together(first: Slips, after: Callable[[Slips], Slips | None]) -> list[Direction] | None:
+    """Return directions in which the slips of several contacts follow, each in its own; None if they are not found.
+
+    Each direction is turned into that of the slip that follows; then by Newton's method, with the angles between the
+    two as the residual and their differences as its derivatives.
+
+    Parameters
+    ----------
+    first : sequence of Direction
+        Components of slips, or of their changes, with which to begin.
+    after : callable
+        The components that follow if friction is against given directions; None where nothing follows.
+
+    Returns
+    -------
+    list of Direction or None
+        None at all where nothing follows, or one of the contacts would not slide.
+    """
+    slips: Slips | None = first
+    assumed = [AHEAD] * len(first)
+    width = 2.0 ** (_GUARD_OF_AN_ANGLE - ctx.prec)
+    for step in range(_MOST_STEPS):
+        if slips is None or any(is_zero(x) and is_zero(y) for x, y in slips):
+            return []
+        off = _angles(assumed, slips)
+        ahead = all(c * x + s * y > 0 for (c, s), (x, y) in zip(assumed, slips, strict=True))
+        if step and ahead and all(abs(x) < width for x in off):
+            return [(arb(c, width), arb(s, width)) for c, s in assumed]
+        change = _newton_step(assumed, off, after) if step > _TURNS and ahead else None
+        if change is None:
+            assumed = [_unit(*slip) for slip in slips]
+        else:
+            assumed = [_unit(c - x * s, s + x * c) for (c, s), x in zip(assumed, change, strict=True)]
+        slips = after(assumed)
+    return None
+
+
+def _angles(assumed: Slips, slips: Slips) -> list[Ball]:
+    """Return the sines of the angles between slips and the directions assumed, without their widths."""
+    return [
+        arb(((c * y - s * x) / (x * x + y * y).sqrt()).mid()) for (c, s), (x, y) in zip(assumed, slips, strict=True)
+    ]
+
+
+def _newton_step(assumed: Slips, off: Sequence[Ball], after: Callable[[Slips], Slips | None]) -> list[Ball] | None:
+    """Return by what the angles change, None where that is not determined."""
+    small = arb(2.0 ** (-ctx.prec // 2))
+    columns = []
+    for j, (c, s) in enumerate(assumed):
+        moved = [*assumed[:j], _unit(c - small * s, s + small * c), *assumed[j + 1 :]]
+        slips = after(moved)
+        if slips is None:
+            return None
+        # Each angle is counted from the direction that it had before.
+        columns.append([(x - y) / small for x, y in zip(_angles(assumed, slips), off, strict=True)])
+    n = len(assumed)
+    matrix = arb_mat([[columns[j][i] - (1 if i == j else 0) for j in range(n)] for i in range(n)])
+    try:
+        found: list[Ball] = matrix.solve(arb_mat([[-x] for x in off])).entries()
+    except ZeroDivisionError:
+        return None
+    return found
+
+
+def _unit(x: Ball, y: Ball) -> Direction:
+    """Return a direction without the width of its components: it is a choice."""
+    x, y = arb(x.mid()), arb(y.mid())
+    size = (x * x + y * y).sqrt()
+    return x / size, y / size
 
 
 def _between(

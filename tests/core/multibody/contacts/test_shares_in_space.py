@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
+from flint import arb
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from core.balls import precision
 from core.multibody.contacts.shares_in_space import Cone, best_share
+from core.multibody.contacts.slip_directions import Direction, directions_together
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import states
 from tests.core.multibody.worked_examples import column, read
@@ -193,3 +197,56 @@ def test_what_slides_on_four_feet_turns_its_slip_as_a_point_does() -> None:
     point, standing = found
     assert np.linalg.norm(standing.values[0] - point.values[0]) <= standing.error + point.error
     assert standing.error < 1e-15
+
+
+TRIPOD = {"a": (0.5, 0.4), "b": (0.5, -0.2), "c": (-0.5, 0.0)}
+
+
+@pytest.mark.parametrize("feet", [LEGS, TRIPOD, {"a": (0.5, 0), "c": (-0.5, 0)}], ids=["four", "three", "two"])
+@pytest.mark.parametrize("friction", [0.1, 0.4])
+def test_what_is_released_on_a_steep_slope_begins_to_slide_on_all_of_its_feet(
+    feet: dict[str, tuple[float, float]], friction: float
+) -> None:
+    """It translates down the line of greatest slope, with g (sin - mu cos), along the line that joins two feet."""
+    (u, v) = (1, 0) if len(feet) == 2 else (0.8, -0.6)
+    scene = {
+        "gravity": [6 * u, 6 * v, -8],
+        "bodies": {
+            "table": {
+                "mass": 10,
+                "moments": [1, 1.5, 2],
+                "at": [0, 0, 0.2],
+                "places": {name: [x, y, -0.2] for name, (x, y) in feet.items()},
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": name, "place": f"table.{name}", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+            | {"friction": friction}
+            for name in feet
+        ],
+    }
+    answer = solve_scene(read(scene), [0.5], ("trajectory",))
+    assert answer.problem is None
+    assert answer.events == ()
+    assert states(answer) == [dict.fromkeys(feet, "slide")]
+    way = (6 - 8 * friction) * 0.125
+    assert column(answer, "table.position").values[0] == pytest.approx([way * u, way * v, 0.2], abs=1e-14)
+
+
+def test_directions_of_onsets_that_depend_on_one_another_converge_or_are_none() -> None:
+    """Of two slips whose tangents are linear in those assumed."""
+
+    def after(assumed: Sequence[Direction]) -> list[Direction]:
+        (a, first), (b, second) = assumed
+        return [(arb(1), second / b / 9 + 1 / arb(9)), (arb(1), first / a / 9)]
+
+    with precision(320):
+        found = directions_together([(arb(1), arb(0))] * 2, after)
+        assert found is not None
+        (c, s), (x, y) = found
+        # Tangents are (9 t + 1)/81 of one another: t = 9/80 and 1/80.
+        assert abs(s / c - arb(9) / 80) < 1e-60
+        assert abs(y / x - arb(1) / 80) < 1e-60
+    assert directions_together([(arb(0), arb(0))], after) == []
+    assert directions_together([(arb(1), arb(0))], lambda _: None) == []
+    assert directions_together([(arb(1), arb(0))], lambda ways: [(-ways[0][1], ways[0][0])]) is None
