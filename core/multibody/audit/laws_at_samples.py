@@ -11,7 +11,7 @@ import numpy as np
 
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.definitions import Description
-from core.multibody.audit.failure import Ledger, Residual
+from core.multibody.audit.failure import NOISE, ROUNDING, Ledger, Residual
 from core.multibody.audit.placement import STEP, Numbers, Placement, Undefined, dot, moved
 from core.multibody.audit.samples import Samples
 
@@ -90,7 +90,8 @@ class Sizes:
     def of(self, connection: Definition) -> tuple[float, float]:
         """Return how large the places and the rates are that the measures of a connection are formed of (m, m/s)."""
         arm = connection.arm + connection.reach
-        size, speed = 0.0, self.fastest
+        # Rates that vanish are known beside those that the forces would make.
+        size, speed = 0.0, max(self.fastest, NOISE / ROUNDING * self.typical()[0])
         for name in connection.bodies:
             size = max(size, self.place[name])
             speed = max(speed, self.spin.get(name, 0.0) * arm)

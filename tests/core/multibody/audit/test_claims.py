@@ -49,6 +49,31 @@ def test_what_comes_to_rest_on_three_rough_places_is_known_to_rounding_of_its_sp
     assert one.failure() is None
 
 
+def test_rates_that_vanish_are_known_beside_those_that_the_forces_would_make() -> None:
+    """Two rods in line over a floor take each other's velocities to 1e-145 m/s."""
+    stone = {"mass": 0.5, "at": ["0.56*0.6", "-0.56*0.8"], "velocity": ["-2*0.56*0.8", "-2*0.56*0.6"]}
+    bar = {
+        "mass": 3.72,
+        "inertia": 0.1,
+        "at": ["0.56*0.6+0.3*sqrt(2)/2", "-0.56*0.8+0.53-0.3*sqrt(2)/2"],
+        "angle": "-acos(sqrt(2)/2)",
+        "places": {"top": [-0.3, 0]},
+    }
+    corner = {"mass": 1.76, "at": ["0.56*0.6", "-0.56*0.8+0.53"]}
+    connections = [
+        {"kind": "rod", "a": "stone", "b": [0, 0]},
+        {"kind": "rod", "a": "corner", "b": "stone"},
+        {"kind": "contact", "place": "corner", "on": {"at": [0, "-0.56*0.8+0.53"]}},
+        {"kind": "pin", "a": "bar.top", "b": "corner"},
+    ]
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"stone": stone, "corner": corner, "bar": bar},
+        "connections": connections,
+    }
+    assert answered(scene, np.zeros(0), ["accelerations", "forces", "energy"]).failure() is None
+
+
 def test_a_wrong_angle_of_precession_is_refused() -> None:
     count = 0
     for scene in PRECESSING:
