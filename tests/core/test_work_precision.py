@@ -10,6 +10,7 @@ import pytest
 
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.multibody.motion.modelling import system_of
+from core.systems.accuracy import run_to_accuracy
 from core.systems.budget import Budget
 from core.systems.error_statements import known_norm, measured
 from core.systems.methods import (
@@ -20,7 +21,6 @@ from core.systems.methods import (
     RungeKutta4,
     SymmetricSplitting,
 )
-from core.systems.solve import solve
 from core.work_precision import Measurement, pareto_front, work_precision
 from tests.core.multibody.motion.test_generic_equation import PENDULUM, PROJECTILE
 from tests.core.multibody.worked_examples import read
@@ -110,7 +110,7 @@ def test_the_recommendation_reaches_the_accuracy_when_it_is_followed(accuracy: f
     system = prey_and_predator()
     method = work_precision(system, TIMES, accuracy=accuracy).recommendation.method
     assert method is not None
-    reference = solve(system, TIMES, accuracy=1e-12).state
+    reference = run_to_accuracy(system, TIMES, 1e-12, Budget()).states
     norm = known_norm(reference, system.initial_state)
     assert measured(method.integrate(system, TIMES).states, reference, TIMES, norm).largest <= accuracy
 

@@ -241,7 +241,10 @@ def _gains(
         off = gained.error + 4.0 * speed * spin.error
         unsure[spin_at : spin_at + 3] = float(np.abs(body.inertia).max()) * off
     heaviest = max(body.mass for body in description.bodies.values())
-    unsure += NOISE * heaviest * extent * max(1.0, extent) / window.half**2
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        # Of windows and bodies near the ends of the doubles nothing is known.
+        noise = NOISE * np.float64(heaviest) * extent * max(1.0, extent) / window.half / window.half
+    unsure += noise if np.isfinite(noise) else np.inf
     return Gains({name: Acceleration(one, angular.get(name)) for name, one in linear.items()}, spins, unsure)
 
 

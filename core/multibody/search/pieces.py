@@ -213,8 +213,9 @@ def _expanded(
     exponents, steps = np.zeros(count, dtype=np.int64), np.zeros(count)
     series = np.zeros((count, n + arrays.rate.shape[0], ORDER + 1, 2))
     sizes = np.zeros(series.shape[:-1])
-    rates = v * (down * two_to(units.time))
-    done = expand(arrays, q * down, rates, _covering(reach, units.time), exponents, steps, series, sizes)
+    # States of another layout would have the kernel compiled once more.
+    places, rates = np.ascontiguousarray(q * down), np.ascontiguousarray(v * (down * two_to(units.time)))
+    done = expand(arrays, places, rates, _covering(reach, units.time), exponents, steps, series, sizes)
     if done < count:
         raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
     way = np.sign(reach)
