@@ -37,6 +37,12 @@ class ProcessStarter:
         self._context.set_forkserver_preload([preload])
         self._main, self._arguments = main, tuple(arguments)
         self._turn = asyncio.Lock()
+        self._burials: list[Thread] = []
+
+    @property
+    def burying(self) -> bool:
+        """Whether the end of a process is still waited for; the exit of this one would find its handle half closed."""
+        return any(thread.is_alive() for thread in self._burials)
 
     async def start(self, *, failed: bool) -> tuple[ForkServerProcess, socket.socket]:
         """Return a new process and our end of the connection to it; begin after a pause if the last one failed."""
@@ -68,7 +74,9 @@ class ProcessStarter:
 
     def bury(self, handle: ForkServerProcess, lost: Callable[[int], None]) -> None:
         """Have a process end that has closed its connection; `lost` is called in this event loop with its exit code."""
-        Thread(target=self._bury, args=(handle, lost, asyncio.get_running_loop()), daemon=True).start()
+        thread = Thread(target=self._bury, args=(handle, lost, asyncio.get_running_loop()), daemon=True)
+        thread.start()
+        self._burials = [*(one for one in self._burials if one.is_alive()), thread]
 
     def _bury(self, handle: ForkServerProcess, lost: Callable[[int], None], loop: asyncio.AbstractEventLoop) -> None:
         # The connection may have ended before the process.

@@ -224,7 +224,7 @@ class Processes:
         for process in tuple(self._all):
             process.kill()
         until = perf_counter() + 5.0
-        while self._all and perf_counter() < until:
+        while (self._all or self._starter.burying) and perf_counter() < until:
             await asyncio.sleep(0.005)
 
     def _hand_out(self) -> None:

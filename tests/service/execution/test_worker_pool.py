@@ -24,6 +24,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.process_starter import ProcessStarter
 from service.execution.worker_pool import MOST_LONG_OF_A_CLIENT, Processes
 from service.execution.worker_process import Process
 from tests.service.toy_processes import framed, main
@@ -425,6 +426,22 @@ class TestLoss:
             assert not any(map(running, before))
             messages = [record.message for record in caplog.records]
             assert messages.count("a compute process did not begin a request") >= 2
+
+    async def test_stopping_waits_until_no_handle_is_being_closed(
+        self, place: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """At its exit Python ends all children, and fails on one whose handle a thread closes meanwhile."""
+        closed, bury = [], ProcessStarter._bury
+
+        def slowly(starter: ProcessStarter, *handle: Any) -> None:
+            time.sleep(0.3)
+            bury(starter, *handle)
+            closed.append(handle)
+
+        monkeypatch.setattr(ProcessStarter, "_bury", slowly)
+        async with warm(place, 2):
+            pass
+        assert len(closed) >= 2
 
     async def test_what_was_not_begun_is_not_left_without_an_end(
         self, place: Path, monkeypatch: pytest.MonkeyPatch
