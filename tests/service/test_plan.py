@@ -180,6 +180,7 @@ async def test_a_study_is_planned_without_running_its_question(monkeypatch: pyte
     assert plan["cost"]["milliseconds"] > 1.0
     for changes, pointer in (
         ({"quantities": ["no pointer"]}, "/request/quantities/0"),
+        ({"quantities": ["/no_such_figure"]}, "/request/quantities/0"),
         ({"vary": [{"pointer": "/nowhere", "values": [1.0]}]}, "/request/vary/0/pointer"),
     ):
         (fault,) = (await planned("/v1/studies", study | changes))["errors"]

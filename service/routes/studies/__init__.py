@@ -95,6 +95,10 @@ same bits whatever the number of processes, and after any interruption. `/v1/pla
 running the question."""
 
 
+A_FIGURE = "lead to a number, true or false in the answer"
+"""Rule of a quantity. Whether it begins with a field of the answer is known without one."""
+
+
 def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     """Return the route of studies of questions to `routes`."""
     table = QuestionTable(routes, (), "have studies")
@@ -138,8 +142,7 @@ def _answerable(question: StudyRequest, table: QuestionTable, budget: Budget) ->
     for k, figure in enumerate(_paths(question)[1]):
         value = value_at(answer, figure)
         if number_of(value) is None and not is_null(answer, figure):
-            rule = "lead to a number, true or false in the answer"
-            raise InvalidParameter(("quantities", k), rule)
+            raise InvalidParameter(("quantities", k), A_FIGURE)
     return found | {"warnings": [notice.inside(*WITHIN) for notice in answer.get("warnings", ())]}
 
 
@@ -157,6 +160,9 @@ def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> An
     """Return members, inputs, figures, time and size of a study without answering its question, or refuse it."""
     route, design = table.route(question.question), _require_members(question, budget)
     inputs, figures = _paths(question)
+    for k, figure in enumerate(figures):
+        if figure[:1] and figure[0] not in route.answer.model_fields:
+            raise InvalidParameter(("quantities", k), A_FIGURE)
     members = Members(question, table.source(question.question, budget))
     together = members.together
     each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
