@@ -1,12 +1,10 @@
 """The record of studies: one SQLite database in the folder of data, written by any number of processes.
 
-It is in the mode of a write-ahead log: readers never wait for the writer. A study is a row; so is each stretch of its
-members whose results are stored.
+A study is a row; so is each stretch of its members whose results are stored.
 """
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import secrets
@@ -14,25 +12,18 @@ import sqlite3
 import time
 import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
 from service.observability.logs import LOG
 from service.problems import Refusal
+from service.studies.database import DATABASE, opened
 from service.studies.study import ACCEPTED, DISMISSED, RUNNING, STATES, SUCCESSFUL, UNFINISHED, Owner, Quotas, Study
-
-DATABASE = "studies.sqlite"
 
 PLANNED = {"path", "count", "shape", "inputs", "figures", "together", "seconds", "bytes"}
 """What a plan says."""
-
-PATIENCE = 5.0
-"""Seconds for which a process waits for another's writing."""
-
-LONGEST_LOG = 2**22
-"""Bytes to which the log beside the database is cut when it has been written into it."""
 
 SHARE_OF_ONE = 0.5
 """Of the bytes of all studies, which those of one owner may take."""
@@ -40,33 +31,7 @@ SHARE_OF_ONE = 0.5
 _COMPRESSED = b"\x78"
 """First byte of a compressed request (RFC 1950); no JSON text begins with it."""
 
-_TABLES = """
-CREATE TABLE IF NOT EXISTS studies (
-    id TEXT PRIMARY KEY, owner TEXT NOT NULL, request BLOB NOT NULL, plan TEXT NOT NULL, status TEXT NOT NULL,
-    message TEXT NOT NULL, created REAL NOT NULL, started REAL, finished REAL, statistics TEXT,
-    done INTEGER NOT NULL DEFAULT 0, failed INTEGER NOT NULL DEFAULT 0, seconds REAL NOT NULL DEFAULT 0.0,
-    address TEXT NOT NULL DEFAULT ''
-);
-CREATE TABLE IF NOT EXISTS chunks (
-    study TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL, failed INTEGER NOT NULL,
-    seconds REAL NOT NULL, PRIMARY KEY (study, start)
-) WITHOUT ROWID;
-CREATE INDEX IF NOT EXISTS studies_by_owner ON studies (owner, created);
-"""
-
-
 _STUDY = """SELECT id, owner, plan, status, message, created, started, finished, done, failed, seconds FROM studies """
-
-
-@contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
-    """Wait until no other process, and no other store of this one, prepares the database of a folder."""
-    held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        fcntl.flock(held, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(held)
 
 
 class Store:
@@ -104,7 +69,7 @@ class Store:
         with self._turn:
             try:
                 if self._connection is None:
-                    self._connection = self._opened()
+                    self._connection = opened(self.folder)
                 yield self._connection
             except (OSError, sqlite3.Error) as fault:
                 self._drop()
@@ -119,32 +84,6 @@ class Store:
         if self.folder.is_dir() and not os.access(self.folder, os.W_OK):
             return "it cannot be written to"
         return reason_of(fault)
-
-    def _opened(self) -> sqlite3.Connection:
-        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        file = self.folder / DATABASE
-        # Of two processes that change the mode of a new database at once, SQLite refuses one without waiting.
-        with _alone_in(self.folder):
-            # The files beside the database get the permissions that it has. A file that SQLite may have open is never
-            # opened here: closing it again would release the locks of this process.
-            with suppress(FileExistsError):
-                os.close(os.open(file, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600))
-            file.chmod(0o600)
-            return self._prepared(file)
-
-    def _prepared(self, file: Path) -> sqlite3.Connection:
-        # Used by one thread at a time.
-        connection = sqlite3.connect(file, timeout=PATIENCE, isolation_level=None, check_same_thread=False)
-        # What is removed is given back to the file system; this has to come before the tables.
-        connection.execute("PRAGMA auto_vacuum = FULL")
-        connection.execute("PRAGMA journal_mode = WAL")
-        connection.execute(f"PRAGMA journal_size_limit = {LONGEST_LOG}")
-        connection.execute("PRAGMA synchronous = NORMAL")
-        connection.executescript(_TABLES)
-        if "address" not in [row[1] for row in connection.execute("PRAGMA table_info(studies)")]:
-            # Databases of earlier versions.
-            connection.execute("ALTER TABLE studies ADD COLUMN address TEXT NOT NULL DEFAULT ''")
-        return connection
 
     def create(self, owner: Owner, request: bytes, plan: Mapping[str, Any], most: Quotas) -> str:
         """Record a study and return its id, which cannot be guessed.

@@ -24,8 +24,9 @@ from service.observability.metrics import Metrics
 from service.problems import Refusal
 from service.settings import Settings
 from service.studies import resources
+from service.studies.database import DATABASE
 from service.studies.folder import Ownership
-from service.studies.store import DATABASE, Store
+from service.studies.store import Store
 from service.studies.study import Owner, Quotas
 from service.studies.supervisor import Supervisor
 from tests.service.conftest import INLINE, client_of
