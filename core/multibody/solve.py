@@ -14,11 +14,19 @@ from core.errors import InvalidParameter, SelfCheckFailed
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.answer import SceneSolution
 from core.multibody.audit.audit import audited
+from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.parts.joined_answer import answered_by_parts
 from core.multibody.phases.phase_answer import THRESHOLDS, answered
 from core.multibody.statics.thresholds import RestOf, range_of_rest
-from core.multibody.trajectory.occurrences import ExtremesOf, When, check_search, not_taken
+from core.multibody.trajectory.occurrences import (
+    ExtremesOf,
+    ValueSearch,
+    When,
+    checked_extremes,
+    not_taken,
+    value_search,
+)
 from core.multibody.trajectory.scene_request import SceneRequest
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty, check_value
@@ -106,16 +114,15 @@ def solve_scene(
     outputs = DEFAULT_OUTPUTS if outputs is None else outputs
     for i, output in enumerate(outputs):
         if isinstance(output, (When, ExtremesOf)):
-            check_search(output, i)
             if not np.max(moments, initial=0.0) > 0.0:
                 raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
         elif not isinstance(output, RestOf) and (not isinstance(output, str) or output not in OUTPUTS):
             raise InvalidParameter(
                 ("outputs", i), f"be one of {', '.join(OUTPUTS)}", remedy=did_you_mean(output, OUTPUTS)
             )
-    of_motion = [output if not isinstance(output, RestOf) else THRESHOLDS for output in outputs]
-    request = SceneRequest(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget)
     with precision(BITS):
+        of_motion = [_of_motion(output, i, scene) for i, output in enumerate(outputs)]
+        request = SceneRequest(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget)
         ranges = [
             range_of_rest(scene, output, ("outputs", i, "thresholds"))
             for i, output in enumerate(outputs)
@@ -123,6 +130,15 @@ def solve_scene(
         ]
         answer = answered_by_parts(scene, request, _checked)
         return replace(answer, trajectory=_with_notices(answer, request), thresholds=tuple(ranges) or None)
+
+
+def _of_motion(output: str | When | ExtremesOf | RestOf, index: int, scene: Scene) -> str | ValueSearch | ExtremesOf:
+    """Return what is to be computed of the motion for an output of a question."""
+    if isinstance(output, When):
+        return value_search(output, index, Numerals.of(scene.let, scene.numbers))
+    if isinstance(output, ExtremesOf):
+        return checked_extremes(output, index)
+    return THRESHOLDS if isinstance(output, RestOf) else output
 
 
 def _with_notices(answer: SceneSolution, request: SceneRequest) -> Trajectory | None:

@@ -22,6 +22,7 @@ from core.multibody.language.connection import Connection
 from core.multibody.language.kinds import KINDS
 from core.multibody.language.reading import scene_from, unknown_field
 from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
+from core.multibody.language.written import Number
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
 from core.multibody.statics.thresholds import RestOf
 from core.multibody.trajectory.occurrences import MOST_FOUND, ExtremesOf, When
@@ -112,6 +113,7 @@ def _connection_form() -> type[Request]:
 SceneBody: Any = _body_form()
 SceneConnection: Any = _connection_form()
 Gravity: Any = _by_core(get_type_hints(Scene)["gravity"])
+WrittenNumber: Any = _by_core(Number)
 NamedNumbers: Any = _by_core(get_type_hints(Scene)["let"])
 ConnectionReadByCore: Any = _by_core(SceneConnection)
 SCENE_FIELDS = tuple(entry.name for entry in fields(Scene))
@@ -125,7 +127,9 @@ class WhenQuestion(Request):
         "its length, such as ball.velocity.length.",
         max_length=100,
     )
-    equals: float = Field(description="In the unit of the quantity.")
+    equals: WrittenNumber = Field(
+        description="In the unit of the quantity; a number as those of the description, which may use names of let."
+    )
     nth: int | None = Field(
         default=None, ge=1, le=MOST_FOUND, description="Which time after the start; every one if left out."
     )
@@ -137,8 +141,10 @@ class ThresholdsQuestion(Request):
     vary: str = Field(
         max_length=300, description="JSON pointer of the number in the scene: /connections/0/friction, /let/slope."
     )
-    between: list[float] = Field(
-        min_length=2, max_length=2, description="Bounds up to which is looked, with the written value between them."
+    between: list[WrittenNumber] = Field(
+        min_length=2,
+        max_length=2,
+        description="Bounds up to which is looked, with the written value between them; numbers as in the description.",
     )
 
 
@@ -182,7 +188,8 @@ class SceneDescription(Request):
             )
             for name, form in self.bodies.items()
         }
-        read = {name: document[name] for name in ("gravity", "connections", "let") if name in document}
+        written = ("gravity", "connections", "let", "outputs")
+        read = {name: document[name] for name in written if document.get(name) is not None}
         return self.model_copy(update={**read, "bodies": bodies})
 
     def scene(self) -> Scene:

@@ -724,3 +724,16 @@ async def test_thresholds_are_planned() -> None:
     pull = {"thresholds": {"vary": "/connections/1/force/0", "between": [-50, 5]}}
     plan = await asked({"path": PATH, "request": BLOCK | {"outputs": [pull]}}, "/v1/plan")
     assert plan.status_code == 200, plan.text
+
+
+async def test_the_value_of_a_search_is_a_number_as_those_of_the_scene() -> None:
+    """At 45 degrees a pendulum turns back: a formula has the height of the turn, the nearest double lies below it."""
+    question = PENDULUM | {"let": {"root": "sqrt(2)"}, "bodies": {"p": {"mass": 1, "at": ["root/2", "-root/2"]}}}
+    for written, count in (('"-root/2"', 1), ("-0.7071067811865476", 3), ("-0.70710678118654752440", 0)):
+        search = '{"when": {"quantity": "p.position.y", "equals": ' + written + "}}"
+        document = json.dumps(question | {"times": [2], "outputs": ["SEARCH"]}).replace('"SEARCH"', search)
+        response = await sent(document.encode())
+        assert response.status_code == 200, response.text
+        found = response.json()["occurrences"]
+        assert len(found) == count
+        assert all(one["equals"] == -0.7071067811865476 for one in found)

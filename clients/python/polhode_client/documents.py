@@ -1479,7 +1479,7 @@ class WhenQuestion(TypedDict):
     """A quantity, and the value that it is to take."""
 
     quantity: str
-    equals: float
+    equals: float | str | AngleInDegrees
     nth: NotRequired[int | None]
 
 

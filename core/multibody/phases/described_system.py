@@ -35,7 +35,7 @@ from core.multibody.trajectory.inherited import (
     instants,
     with_inherited,
 )
-from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.multibody.trajectory.occurrences import ExtremesOf, ValueSearch
 from core.multibody.trajectory.scene_request import Output, require_affordable
 from core.multibody.trajectory.smooth_search import SmoothSearch
 from core.notices import Notice
@@ -211,7 +211,9 @@ class DescribedSystem:
 
         None where no search is among the outputs.
         """
-        searches = [(i, output) for i, output in enumerate(self.outputs) if isinstance(output, (When, ExtremesOf))]
+        searches = [
+            (i, output) for i, output in enumerate(self.outputs) if isinstance(output, (ValueSearch, ExtremesOf))
+        ]
         if not searches:
             return None, None
         motion, end = self.motion, float(np.max(times))
@@ -231,7 +233,7 @@ class DescribedSystem:
             found: list[Occurrence] = []
             ranges: list[SceneExtremes] = []
             for index, one in searches:
-                if isinstance(one, When):
+                if isinstance(one, ValueSearch):
                     found.extend(along.occurrences(one, index))
                 else:
                     ranges.append(along.extremes(one, index))

@@ -18,23 +18,18 @@ from core.errors import NotApplicable
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.equations.packed import nearest
 from core.multibody.phases.stretches import Stretch
-from core.multibody.trajectory.column_errors import PLACES_BETWEEN
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES
 from core.multibody.trajectory.occurrences import (
     MOST_FOUND,
-    ROUNDED,
     ExtremesOf,
-    When,
+    ValueSearch,
     component,
     require_in_range,
     unknown,
 )
 from core.multibody.trajectory.quantities import sought_in
-from core.multibody.trajectory.search_along import Sampler, SearchAlong
+from core.multibody.trajectory.search_along import Hit, Sampler, SearchAlong
 from core.systems.trajectory import Column, How
-
-_SLOPE = 1e-6
-"""Share of a stretch over which the slope at its end is formed."""
 
 
 class SearchInPhases:
@@ -51,7 +46,7 @@ class SearchInPhases:
     def __init__(self, pieces: Sequence[Stretch], how: How) -> None:
         self.pieces, self.how = pieces, how
 
-    def occurrences(self, search: When, index: int) -> list[Occurrence]:
+    def occurrences(self, search: ValueSearch, index: int) -> list[Occurrence]:
         """Return the times after the start at which a quantity takes a value."""
         wanted = MOST_FOUND if search.nth is None else search.nth
         found: list[Occurrence] = []
@@ -99,7 +94,7 @@ class SearchInPhases:
             until=nearest(last.start + arb(last.length)),
         )
 
-    def _samplers(self, search: When | ExtremesOf, index: int) -> list[Sampler]:
+    def _samplers(self, search: ValueSearch | ExtremesOf, index: int) -> list[Sampler]:
         """Return the samplers of a quantity on every stretch."""
         known: dict[str, Column] = {}
         for group in COLUMNS_OF_STATES:
@@ -109,7 +104,7 @@ class SearchInPhases:
                 return [self._sampler(piece, group, search) for piece in self.pieces]
         raise unknown(search, index, known)
 
-    def _sampler(self, piece: Stretch, group: str, search: When | ExtremesOf) -> Sampler:
+    def _sampler(self, piece: Stretch, group: str, search: ValueSearch | ExtremesOf) -> Sampler:
         def sampled(times: Floats) -> Column:
             found = component(piece.columns(np.asarray(times, dtype=np.float64), self.how, group), search.quantity)
             if found is None:
@@ -122,52 +117,38 @@ class SearchInPhases:
 
         return sampled
 
-    def _along(self, piece: Stretch, sampler: Sampler, search: When | ExtremesOf) -> SearchAlong:
+    def _along(self, piece: Stretch, sampler: Sampler, search: ValueSearch | ExtremesOf) -> SearchAlong:
         """Return the search along a stretch."""
         model = piece.phase.models[0]
         sought = sought_in(model.whole, piece.phase.determined)(search.quantity)
         assert sought is not None
         return SearchAlong(piece.expansions, sought, sampler, piece.length, piece.expanded)
 
-    def _taken(self, search: When, samplers: Sequence[Sampler]) -> Iterator[Occurrence]:
+    def _taken(self, search: ValueSearch, samplers: Sequence[Sampler]) -> Iterator[Occurrence]:
         """Yield where the value is taken, in order."""
-        for number, (piece, sampler) in enumerate(zip(self.pieces, samplers, strict=True)):
-            if not piece.length > 0.0:
-                continue
-            column = sampler(piece.length * np.array([0.0, *PLACES_BETWEEN, 1.0]))
+        searched = [
+            (piece, sampler, self._along(piece, sampler, search))
+            for piece, sampler in zip(self.pieces, samplers, strict=True)
+            if piece.length > 0.0
+        ]
+        for number, (piece, sampler, along) in enumerate(searched):
+            column = sampler(np.array([0.0, piece.length]))
             require_in_range(search.quantity, column.error)
-            noise = 2.0 * column.error
-            near = np.abs(column.values - search.equals) <= noise
-            # What has the value all the time takes it no more.
-            if np.all(near):
-                continue
-            along = self._along(piece, sampler, search)
-            hits = along.hits(search.equals, noise if number else ROUNDED * abs(search.equals))
             at_end = None
-            if near[-1] or self._begins(number + 1, samplers, search):
-                at_end = self._at_end(piece, sampler, search)
-            for hit in hits:
-                if at_end is not None and float(hit.time) + hit.error >= piece.length - at_end.error:
-                    continue
-                time = nearest(piece.start + hit.time)
-                error = hit.error + piece.late + 2.0**-52 * abs(time)
-                yield Occurrence(search.quantity, search.equals, column.unit, 0, time, error, self.how)
+            for hit in along.hits(search.value):
+                if hit.time - piece.extent > hit.error:
+                    break
+                if hit.time - piece.extent < -hit.error:
+                    yield self._occurrence(search, column.unit, piece, hit)
+                else:
+                    at_end = hit
+            begins = number + 1 < len(searched) and searched[number + 1][2].starts_with(search.value)
+            if at_end is None and begins and not along.has_throughout(search.value):
+                at_end = Hit(piece.extent, 0.0)
             if at_end is not None:
-                yield at_end
+                yield self._occurrence(search, column.unit, piece, at_end)
 
-    def _begins(self, number: int, samplers: Sequence[Sampler], search: When) -> bool:
-        """Return whether a stretch begins with the value, and another one follows it."""
-        if number == len(samplers):
-            return False
-        start = samplers[number](np.array([0.0, self.pieces[number].length]))
-        return abs(float(start.values[0]) - search.equals) <= 2.0 * start.error
-
-    def _at_end(self, piece: Stretch, sampler: Sampler, search: When) -> Occurrence:
-        """Return the occurrence at the event that ends a stretch."""
-        end = sampler(np.array([piece.length]))
-        before = piece.length * (1.0 - _SLOPE)
-        slope = abs(float(sampler(np.array([before])).values[0] - end.values[0])) / (piece.length - before)
-        time = nearest(piece.start + arb(piece.length))
-        off = min(end.error / slope if slope > 0.0 else piece.length, piece.length)
-        error = off + piece.late + 2.0**-52 * abs(time)
-        return Occurrence(search.quantity, search.equals, end.unit, 0, time, error, self.how)
+    def _occurrence(self, search: ValueSearch, unit: str, piece: Stretch, hit: Hit) -> Occurrence:
+        time = nearest(piece.start + hit.time)
+        error = hit.error + piece.late + float(hit.time.rad()) + 2.0**-52 * abs(time)
+        return Occurrence(search.quantity, search.equals, unit, 0, time, error, self.how)

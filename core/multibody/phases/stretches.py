@@ -47,8 +47,8 @@ class Stretch:
     phase : Phase
     start : ball
         Since the start of the scene.
-    length : float
-        Seconds.
+    extent : ball
+        How long it is (s).
     late : float
         Error of the start (s).
     arc : tuple of three lists of ball, or None
@@ -60,10 +60,15 @@ class Stretch:
     number: int
     phase: Phase
     start: Ball
-    length: float
+    extent: Ball
     late: float
     arc: tuple[Sequence[Ball], Sequence[Ball], Sequence[Ball]] | None = None
     singular: bool = False
+
+    @property
+    def length(self) -> float:
+        """The double nearest to how long it is (s)."""
+        return float(self.extent)
 
     def states(self, times: Floats) -> WholeStates:
         """Return the states at times since the start of the stretch, shape (t,)."""
@@ -113,7 +118,7 @@ def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:
         late += SAFETY_FACTOR * max((abs(float(one.time - phase.start)) for one in phase.tracks), default=0.0)
         if phase.bounces is None:
             singular = _is_singular(motion.ended, until)
-            yield Stretch(number, phase, phase.start, float(until - phase.start), late, singular=singular)
+            yield Stretch(number, phase, phase.start, until - phase.start, late, singular=singular)
         else:
             yield from _arcs(number, phase, phase.bounces, until, late)
 
@@ -135,11 +140,11 @@ def _arcs(number: int, phase: Phase, bounces: Accumulation, until: Ball, late: f
             left = bounces.length - begins
             before = [x - left * y for x, y in zip(q, v, strict=True)]
             arc = before, v, [ZERO] * len(v)
-            yield Stretch(number, phase, phase.start + begins, float(reach - begins), late, arc)
+            yield Stretch(number, phase, phase.start + begins, reach - begins, late, arc)
             return
         ends = bounces.begins(n + 1)
-        length = float((ends if ends < reach else reach) - begins)
-        yield Stretch(number, phase, phase.start + begins, length, late, (*bounces.state(begins, power), bounces.a))
+        extent = (ends if ends < reach else reach) - begins
+        yield Stretch(number, phase, phase.start + begins, extent, late, (*bounces.state(begins, power), bounces.a))
     raise BudgetExceeded(
         "bounces that are followed one by one",
         MOST_ARCS,

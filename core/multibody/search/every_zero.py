@@ -109,15 +109,14 @@ class EveryZero:
                         watch.since = abs(near.time) - near.width
                     return
                 zero = self._motion.at(one.start, length, watch, share, tail)
-                # One zero at the end of a piece may be undecided before it and certain after.
-                if near is not None and abs(zero.time - near.time) > 2.0 * near.width:
+                # One zero at the end of a piece may be undecided before it and certain after, where signs allow it.
+                if near is not None and (before == after or abs(zero.time - near.time) > 2.0 * near.width):
                     yield near
                     before = 0
                 # What is not above zero before it falls has done so at the end of the piece before.
                 if before != after or near is not None:
                     yield zero
                 self._signs[watch.index] = after
-            start = end
             start = end
 
     def _within(self, watch: Watch, since: float, until: float) -> Found:

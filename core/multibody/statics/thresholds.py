@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
 
 from flint import arb
 
@@ -30,6 +29,7 @@ from core.multibody.contacts.contact_states import Problem, State
 from core.multibody.equations.packed import nearest
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.language.written import Number
 from core.multibody.table.chains import has_chain
 from core.multibody.table.description import Described, described
 from core.near_names import did_you_mean
@@ -58,12 +58,12 @@ class RestOf:
     ----------
     vary : str
         JSON pointer of a number of the description, as ``/connections/0/friction`` or ``/let/alpha``.
-    between : sequence of float
-        Two bounds, with the written value between them.
+    between : sequence of number
+        Two bounds as they are written, with the written value between them.
     """
 
     vary: str
-    between: Sequence[float]
+    between: Sequence[Number]
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
     NotApplicable
         Where other places touch with another value.
     """
-    path, least, most = _checked(question, where)
+    path, least, most = _checked(scene, question, where)
     if has_chain(scene):
         raise NotApplicable(
             "thresholds of rest are not answered beside a chain",
@@ -166,18 +166,17 @@ def _why_not(base: Described, touching: Sequence[int]) -> str:
     return f"with the written value no forces balance it{': ' if states else ''}{', '.join(states)}"
 
 
-def _checked(question: RestOf, where: Path) -> tuple[Path, Ball, Ball]:
+def _checked(scene: Scene, question: RestOf, where: Path) -> tuple[Path, Ball, Ball]:
     """Return the path of the number and the bounds."""
     if not isinstance(question.vary, str) or not question.vary.startswith("/"):
         raise InvalidParameter((*where, "vary"), "be a JSON pointer, which begins with /")
     bounds = question.between
     if isinstance(bounds, str) or not isinstance(bounds, Sequence) or len(bounds) != 2:
         raise InvalidParameter((*where, "between"), "be two numbers")
-    for i, x in enumerate(bounds):
-        if isinstance(x, bool) or not isinstance(x, (int, float)) or not isfinite(x):
-            raise InvalidParameter((*where, "between", i), "be a finite number")
+    numerals = Numerals.of(scene.let, scene.numbers)
+    least, most = (numerals.number(x, (*where, "between", i)) for i, x in enumerate(bounds))
     path = tuple(int(part) if part.isdecimal() else part for part in question.vary[1:].split("/"))
-    return path, arb(bounds[0]), arb(bounds[1])
+    return path, least, most
 
 
 def one_interval(scene: Scene, path: Path) -> bool:

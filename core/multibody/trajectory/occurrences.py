@@ -6,31 +6,59 @@ A quantity is a column of the answer, or a component of one: ``rod.angle``, ``ba
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from core.errors import InvalidParameter, NotApplicable, Path
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.answer import Occurrence
+from core.multibody.equations.packed import nearest
+from core.multibody.language.numerals import Numerals
+from core.multibody.language.written import Number
 from core.near_names import did_you_mean
 from core.notices import Notice
 from core.systems.trajectory import Column
 
-ROUNDED = 2.0**-52
-"""Rounding of a value that is searched, as a share of it."""
 MOST_FOUND = 1000
 """Occurrences of one search that are answered at most."""
 
 
 @dataclass(frozen=True)
 class When:
-    """A question: when does a quantity take a value, for the n-th time after the start, or every time?"""
+    """A question: when does a quantity take a value, for the n-th time after the start, or every time?
+
+    Attributes
+    ----------
+    quantity : str
+    equals : number
+        As it is written: a number of the description, which may use its names.
+    nth : int or None
+    """
+
+    quantity: str
+    equals: Number
+    nth: int | None = None
+
+
+@dataclass(frozen=True)
+class ValueSearch:
+    """The same, with the value as it is read.
+
+    Attributes
+    ----------
+    quantity : str
+    equals : float
+        The double nearest to the value.
+    nth : int or None
+    value : ball
+    """
 
     quantity: str
     equals: float
-    nth: int | None = None
+    nth: int | None
+    value: Ball = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -79,29 +107,34 @@ def require_in_range(quantity: str, *numbers: float) -> None:
         )
 
 
-def check_search(search: When | ExtremesOf, index: int) -> None:
-    """Raise `InvalidParameter` unless a question can be answered as it stands."""
-    where: Path = ("outputs", index, "when") if isinstance(search, When) else ("outputs", index)
-    key = "quantity" if isinstance(search, When) else "extremes"
-    if not isinstance(search.quantity, str) or not search.quantity:
-        raise InvalidParameter((*where, key), "name a column of the trajectory, or a component of one")
-    if isinstance(search, ExtremesOf):
-        return
-    number = isinstance(search.equals, (int, float)) and not isinstance(search.equals, bool)
-    # A whole number may be too large for a double.
-    if not number or not abs(search.equals) <= sys.float_info.max:
-        raise InvalidParameter((*where, "equals"), "be a finite number")
+def checked_extremes(search: ExtremesOf, index: int) -> ExtremesOf:
+    """Return a question, or raise `InvalidParameter` if it names no quantity."""
+    _require_name(search.quantity, ("outputs", index, "extremes"))
+    return search
+
+
+def value_search(search: When, index: int, numerals: Numerals) -> ValueSearch:
+    """Return a question with its value as it is read, or raise `InvalidParameter` if it cannot be answered."""
+    where: Path = ("outputs", index, "when")
+    _require_name(search.quantity, (*where, "quantity"))
+    value = numerals.number(search.equals, (*where, "equals"))
     nth = search.nth
     if nth is not None and (isinstance(nth, bool) or not isinstance(nth, int) or not 1 <= nth <= MOST_FOUND):
         raise InvalidParameter((*where, "nth"), f"be a whole number from 1 to {MOST_FOUND}")
+    return ValueSearch(search.quantity, nearest(value), nth, value)
 
 
-def unknown(search: When | ExtremesOf, index: int, columns: Mapping[str, Column]) -> InvalidParameter:
+def _require_name(quantity: object, path: Path) -> None:
+    if not isinstance(quantity, str) or not quantity:
+        raise InvalidParameter(path, "name a column of the trajectory, or a component of one")
+
+
+def unknown(search: ValueSearch | ExtremesOf, index: int, columns: Mapping[str, Column]) -> InvalidParameter:
     """Return the fault of a quantity that the scene has not."""
     near = did_you_mean(search.quantity, _quantities(columns))
     components = 'take a component of a vector by ".x", its length by ".length"'
     return InvalidParameter(
-        ("outputs", index, "when", "quantity") if isinstance(search, When) else ("outputs", index, "extremes"),
+        ("outputs", index, "when", "quantity") if isinstance(search, ValueSearch) else ("outputs", index, "extremes"),
         f'name a quantity of the scene, unlike "{search.quantity[:80]}"; there are {", ".join([*columns][:40])}',
         remedy=f"{near} {components}" if near else components,
     )
@@ -119,7 +152,7 @@ def not_taken(outputs: Sequence[object], occurrences: Sequence[Occurrence], end:
     """
     left = list(occurrences)
     for index, search in enumerate(outputs):
-        if not isinstance(search, When):
+        if not isinstance(search, ValueSearch):
             continue
         own = of_search(search, left)
         if not own:
@@ -130,7 +163,7 @@ def not_taken(outputs: Sequence[object], occurrences: Sequence[Occurrence], end:
             yield Notice("value-not-taken", detail, ("outputs", index, "when"))
 
 
-def of_search(search: When, found: list[Occurrence]) -> list[Occurrence]:
+def of_search(search: ValueSearch, found: list[Occurrence]) -> list[Occurrence]:
     """Take the occurrences of a search from what is left of those that several found, one after another."""
     own: list[Occurrence] = []
     while found and found[0].quantity == search.quantity and found[0].equals == search.equals:

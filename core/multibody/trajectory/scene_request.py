@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from core.arrays import Floats
 from core.errors import BudgetExceeded
-from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.multibody.trajectory.occurrences import ExtremesOf, ValueSearch
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.question import System
@@ -18,7 +18,7 @@ from core.systems.trajectory import Trajectory
 MOST_NUMBERS = 5_000_000
 """Numbers that one trajectory may have."""
 
-Output = str | When | ExtremesOf
+Output = str | ValueSearch | ExtremesOf
 
 
 def require_affordable(samples: int, coordinates: int) -> None:

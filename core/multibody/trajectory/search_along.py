@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import islice
 
 import numpy as np
@@ -14,14 +14,14 @@ from flint import arb
 from core.arrays import Floats
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import Ball
-from core.multibody.search.bands import FLOOR, SAFETY_FACTOR, Quantity
+from core.multibody.search.bands import FLOOR, SAFETY_FACTOR, Quantity, with_band
 from core.multibody.search.every_zero import EveryZero
 from core.multibody.search.first_of_motion import Expansions
 from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located
 from core.multibody.search.pieces import Expanded
 from core.multibody.trajectory.column_errors import PLACES_BETWEEN
-from core.multibody.trajectory.quantities import Sought, shifted
+from core.multibody.trajectory.quantities import Sought
 from core.systems.trajectory import Column
 
 Sampler = Callable[[Floats], Column]
@@ -89,30 +89,44 @@ class SearchAlong:
     end: float
     expanded: float = math.inf
 
-    def hits(self, value: float, noise: float) -> Iterator[Hit]:
-        """Yield the times after zero at which the quantity has a value, in their order.
+    def hits(self, value: Ball) -> Iterator[Hit]:
+        """Yield the times after zero at which the quantity has a value, in their order; what has it there leaves it.
 
-        Parameters
-        ----------
-        noise : float
-            The quantity has the value at time zero if it differs from it by no more: it leaves it there.
+        A touch that is not known from two crossings or from none, and two crossings that are not known apart, are one
+        time, with an error that reaches to where the quantity certainly differs from the value. The last time may be
+        beyond the end.
         """
-        between = self._between
-        if np.all(np.abs(between.values - value) <= 2.0 * between.error):
+        if self.has_throughout(value):
             # What has the value all the time takes it no more.
             return
-        quantity = self.sought.less(arb(value))
-        if abs(float(self.sampler(np.zeros(1)).values[0]) - value) <= noise:
-            start = quantity(self._motions[0](np.zeros(1), np.array([self.end]))).values[0, 0]
-            quantity = partial(shifted, quantity, arb(float(start[0])) + arb(float(start[1])))
-        zeros = EveryZero(self._motions, [quantity], self._coarse).until(min(self.end, self.expanded))
+        quantity = self.sought.less(value)
+        # The end is rounded.
+        end = min(math.nextafter(self.end, math.inf), self.expanded)
+        zeros = EveryZero(self._motions, [quantity], self._coarse).until(end)
         count = 1
         while batch := list(islice(zeros, count)):
-            for one in self._with_the_value(batch, value):
-                hit = self._located(quantity, one)
-                if float(hit.time) - hit.error <= self.end:
-                    yield hit
+            for one in self._with_the_value(batch, float(value)):
+                yield self._located(quantity, one)
             count = min(2 * count, _MOST_AT_ONCE)
+
+    def starts_with(self, value: Ball) -> bool:
+        """Return whether the quantity has a value at time zero, as far as is known."""
+        return self._is_at(value, np.zeros(1))
+
+    def has_throughout(self, value: Ball) -> bool:
+        """Return whether it has a value at the start, the end, and places that meet no fraction of a period."""
+        places = self.end * np.array([0.0, *PLACES_BETWEEN, 1.0])
+        return self._is_at(value, np.minimum(places, self.expanded))
+
+    def _is_at(self, value: Ball, times: Floats) -> bool:
+        """Return whether the quantity has a value at times of shape (t,), as far as is known."""
+        reach = np.full(len(times), self.end)
+        pieces = [motion(times, reach) for motion in self._motions]
+        values, _, band, _ = with_band(self.sought.less(value), pieces)
+        if not np.all(np.abs(values[:, 0, 0]) <= band[:, 0]):
+            return False
+        found = self.sampler(times).values
+        return all(self.sought.has(float(x), float(value)) for x in found)
 
     def extremes(self) -> tuple[Extreme, Extreme]:
         """Return the least and the largest value."""

@@ -21,9 +21,8 @@ from core.multibody.trajectory.columns import COLUMNS_OF_STATES, Columns
 from core.multibody.trajectory.events import runs_of
 from core.multibody.trajectory.occurrences import (
     MOST_FOUND,
-    ROUNDED,
     ExtremesOf,
-    When,
+    ValueSearch,
     component,
     require_in_range,
     unknown,
@@ -78,43 +77,46 @@ class SmoothSearch:
         times: list[Occurrence] = []
         ranges: list[SceneExtremes] = []
         for index, output in enumerate(outputs):
-            if isinstance(output, When):
+            if isinstance(output, ValueSearch):
                 times.extend(self._occurrences(output, index))
             elif isinstance(output, ExtremesOf):
                 ranges.append(self._extremes(output, index))
         return tuple(times), tuple(ranges)
 
-    def _occurrences(self, search: When, index: int) -> list[Occurrence]:
+    def _occurrences(self, search: ValueSearch, index: int) -> list[Occurrence]:
         """Return the times after the start at which a quantity takes a value."""
         along = self._along(search, index)
         column = along.sampler(np.array([0.0, self.end]))
         require_in_range(search.quantity, column.error)
         wanted = MOST_FOUND if search.nth is None else search.nth
         found = []
-        for number, hit in enumerate(islice(self._hits(along, search.equals), wanted), 1):
+        for number, hit in enumerate(islice(self._hits(along, search.value), wanted), 1):
             if search.nth in (None, number):
                 time = min(float(hit.time), self.end)
                 error = hit.error + 2.0**-52 * time
                 found.append(Occurrence(search.quantity, search.equals, column.unit, number, time, error, self.how))
         return found
 
-    def _hits(self, along: SearchAlong, value: float) -> Iterator[Hit]:
+    def _hits(self, along: SearchAlong, value: Ball) -> Iterator[Hit]:
         """Yield the times at which a quantity has a value; of one that repeats, those of a period again and again."""
-        noise = ROUNDED * abs(value)
         period = self._period(along)
         if period is None:
-            yield from along.hits(value, noise)
+            yield from (hit for hit in along.hits(value) if not hit.time - hit.error > self.end)
             return
         late = float(period.rad())
-        once = [
-            hit
-            for hit in replace(along, end=_PAST * float(period)).hits(value, noise)
-            if not float(hit.time - period) > 2.0 * (hit.error + late)
-        ]
+        once: list[Hit] = []
+        again = 0
+        for hit in replace(along, end=_PAST * float(period)).hits(value):
+            # What follows the end of a period follows the start, where it may not be known from the value there.
+            image, earlier = hit.time - period, once[again] if again < len(once) else None
+            if earlier is not None and abs(image - earlier.time) <= 2.0 * (hit.error + earlier.error + late):
+                again += 1
+            else:
+                once.append(hit)
         for k in count():
             for hit in once:
                 time = hit.time + k * period
-                if float(time) - hit.error > self.end:
+                if time - hit.error > self.end:
                     return
                 yield Hit(arb(time.mid()), hit.error + k * late)
             if not once:
@@ -154,7 +156,7 @@ class SmoothSearch:
         values = along.sampler(np.array([0.0, float(period), *(float(period) * PLACES_BETWEEN)])).values
         return period if abs(values[1] - values[0]) <= _WOUND * np.max(np.abs(values)) else None
 
-    def _along(self, search: When | ExtremesOf, index: int) -> SearchAlong:
+    def _along(self, search: ValueSearch | ExtremesOf, index: int) -> SearchAlong:
         """Return the search along a quantity."""
         sampler = self._sampler(search, index)
         sought = sought_in(self.whole, self.determined)(search.quantity)
@@ -163,7 +165,7 @@ class SmoothSearch:
         runs = runs_of(self.whole) if kinds is None else [(self.whole, kind) for kind in kinds]
         return SearchAlong(Expansions.of(runs, sought.follows), sought, sampler, self.end, self.expanded)
 
-    def _sampler(self, search: When | ExtremesOf, index: int) -> Sampler:
+    def _sampler(self, search: ValueSearch | ExtremesOf, index: int) -> Sampler:
         """Return the samples of a quantity, from the columns among which it is."""
         known: dict[str, Column] = {}
         for group in COLUMNS_OF_STATES:

@@ -56,6 +56,26 @@ def test_every_bounce_passes_a_height_twice() -> None:
     assert third == every[2]
 
 
+@pytest.mark.parametrize("height", ["1e-25", "1e-20", "1e-16", "1e-9"])
+def test_a_height_just_above_the_floor_is_passed_before_and_after_every_bounce(height: str) -> None:
+    every = found(bouncing(), 2.2, When("ball.position.y", height))
+    with mp.workdps(50):
+        times = []
+        for n in (1, 2, 3):
+            speed = G * bounce(1) * mpf("0.8") ** (n - 1)
+            ahead, behind = (v - sqrt(v**2 - 2 * G * mpf(height)) for v in (speed, mpf("0.8") * speed))
+            times += [bounce(n) - ahead / G, bounce(n) + behind / G]
+    for one, time in zip(every, times, strict=True):
+        require_at(one, time)
+
+
+def test_what_a_velocity_is_before_an_impact_is_taken_there() -> None:
+    """From 1.25 m with g 9.81 the speed is sqrt(24.525) at the floor: reached, and left by a jump."""
+    (one,) = found(bouncing(), 1.0, When("ball.velocity.y", "-sqrt(2*9.81*1.25)"))
+    with mp.workdps(30):
+        require_at(one, bounce(1))
+
+
 def test_what_an_impact_jumps_over_is_not_taken() -> None:
     """The velocity is zero at the top of every arc, not at the impacts that turn it; bounce 20 is among the summed."""
     every = found(bouncing(), 6.0, When("ball.velocity.y", 0.0))

@@ -203,6 +203,14 @@ def test_rest_that_would_end_by_other_places_touching_is_refused() -> None:
     assert refused.value.path[:3] == ("outputs", 1, "thresholds")
 
 
+def test_bounds_are_numbers_as_those_of_the_scene() -> None:
+    answer = solve_scene(read(INCLINE), outputs=[RestOf("/let/alpha", ("alpha", "alpha + 1e-3"))])
+    (found,) = answer.thresholds or ()
+    assert found.lower is not None
+    assert found.upper is not None
+    assert (found.lower.value, found.upper.value) == (0.2, 0.201)
+
+
 @pytest.mark.parametrize(
     ("vary", "between", "where"),
     [

@@ -58,6 +58,36 @@ def test_a_thrown_ball_is_as_high_twice_and_at_its_highest_once():
     assert times_of(ball, 3.0, When("b.position.y", 4.905 + 1e-10))[0] == []
 
 
+@pytest.mark.parametrize("contact", [False, True])
+@pytest.mark.parametrize("exponent", [-26, -24, -20, -17, -16, -12, -8, -4, -2])
+def test_a_value_beside_that_of_a_turning_point_is_taken_on_both_sides_of_it(exponent: int, contact: bool) -> None:
+    """x = cos(2 t) from rest at 1: 1 - d is met at multiples of pi, less and more acos(1 - d)/2; 1 where it turns."""
+    spring = {"kind": "spring", "a": "b", "b": [0, 0], "stiffness": 4, "rest_length": 0}
+    line = {"kind": "contact" if contact else "track", "place": "b", "on": {"at": [0, 0]}}
+    scene = {"gravity": [0, -1], "bodies": {"b": {"mass": 1, "at": [1, 0]}}, "connections": [line, spring]}
+    found, errors = times_of(read(scene), 6.5, When("b.position.x", f"1 - 1e{exponent}"))
+    with mp.workdps(60):
+        off = mp.acos(1 - mp.mpf(10) ** exponent) / 2
+        exact = [off, *(mp.pi * k + sign * off for k in (1, 2) for sign in (-1, 1))]
+    assert len(found) == 5
+    assert all(abs(time - right) <= error < 1e-14 for time, error, right in zip(found, errors, exact, strict=True))
+    assert times_of(read(scene), 6.5, When("b.position.x", f"1 + 1e{exponent}"))[0] == []
+    found, errors = times_of(read(scene), 6.5, When("b.position.x", 1))
+    assert all(abs(time - mp.pi * k) <= error < 1e-12 for k, time, error in zip((1, 2), found, errors, strict=True))
+
+
+@pytest.mark.parametrize("exponent", [-34, -31, -30, -29, -28, -27])
+def test_a_value_that_is_not_known_from_that_of_a_turning_point_is_one_time_whose_error_has_both(exponent: int) -> None:
+    spring = {"kind": "spring", "a": "b", "b": [0, 0], "stiffness": 4, "rest_length": 0}
+    line = {"kind": "track", "place": "b", "on": {"at": [0, 0]}}
+    scene = {"gravity": [0, -1], "bodies": {"b": {"mass": 1, "at": [1, 0]}}, "connections": [line, spring]}
+    found, errors = times_of(read(scene), 6.5, When("b.position.x", f"1 - 1e{exponent}"))
+    with mp.workdps(60):
+        off = mp.acos(1 - mp.mpf(10) ** exponent) / 2
+        for right in (mp.pi * k + sign * off for k in (1, 2) for sign in (-1, 1)):
+            assert any(abs(time - right) <= error < 1e-12 for time, error in zip(found, errors, strict=True))
+
+
 def test_extremes_over_a_period_are_those_of_all_time():
     """The pull is m (3 g cos(theta) - 2 g cos(2.5)): least at the ends, largest below; E = m g (1 - cos)."""
     asked = [ExtremesOf("r0.force"), ExtremesOf("p0.velocity.length"), ExtremesOf("p0.position.y")]
@@ -125,7 +155,7 @@ def test_what_happens_between_the_start_and_the_first_look_counts(speed):
     with mp.workdps(40):
         between = (mp.mpf("0.5") + swing.amplitude) / 2
         equals = float(mp.sin(between))
-        up = swing.phase(mp.asin(mp.mpf(equals))) - swing.start
+        up = swing.phase(mp.asin(mp.mpf(repr(equals)))) - swing.start
         exact = [up + 4 * k * swing.quarter for k in range(3)]
         exact += [2 * swing.quarter - 2 * swing.start - up + 4 * k * swing.quarter for k in range(3)]
         exact = sorted(t for t in exact if t > 0)[:4]
