@@ -19,12 +19,13 @@ from core.multibody.language.scene import Scene
 from core.multibody.parts.joined_answer import answered_by_parts
 from core.multibody.phases.phase_answer import THRESHOLDS, answered
 from core.multibody.statics.thresholds import RestOf, range_of_rest
+from core.multibody.trajectory.events import searched_until
 from core.multibody.trajectory.occurrences import (
     ExtremesOf,
     ValueSearch,
     When,
     checked_extremes,
-    not_taken,
+    left_out,
     value_search,
 )
 from core.multibody.trajectory.scene_request import SceneRequest
@@ -142,13 +143,12 @@ def _of_motion(output: str | When | ExtremesOf | RestOf, index: int, scene: Scen
 
 
 def _with_notices(answer: SceneSolution, request: SceneRequest) -> Trajectory | None:
-    """Return the trajectory of an answer, with notices of what was searched for in vain."""
+    """Return the trajectory of an answer, with notices of what was searched for in vain or is left out."""
     motion = answer.trajectory
     if motion is None or answer.occurrences is None:
         return motion
-    end = float(np.max(request.times))
-    end = end if answer.ended is None else min(end, answer.ended.time)
-    return replace(motion, warnings=(*motion.warnings, *not_taken(request.outputs, answer.occurrences, end)))
+    end = searched_until(float(np.max(request.times)), answer.ended)
+    return replace(motion, warnings=(*motion.warnings, *left_out(request.outputs, answer.occurrences, end)))
 
 
 def _checked(scene: Scene, request: SceneRequest) -> SceneSolution:

@@ -12,7 +12,6 @@ from core.arrays import Floats
 from core.errors import AccuracyUnreachable, MechanicsError, NotApplicable, inside_field
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.language.scene import Scene
-from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.phases.inherited_in_phases import changes_in_phases
 from core.multibody.phases.method_samples import integrated, measured
@@ -26,7 +25,7 @@ from core.multibody.phases.sums_in_phases import SumsInPhases
 from core.multibody.trajectory.along import Along
 from core.multibody.trajectory.column_errors import FINEST, require_reached, scaled, worst
 from core.multibody.trajectory.columns import NEAREST, Columns
-from core.multibody.trajectory.events import OF_LENGTHS
+from core.multibody.trajectory.events import searched_until
 from core.multibody.trajectory.inherited import (
     NO_HORIZON_NEEDED,
     Changing,
@@ -216,15 +215,13 @@ class DescribedSystem:
         ]
         if not searches:
             return None, None
-        motion, end = self.motion, float(np.max(times))
-        ended = motion.ended
-        end = end if ended is None else min(end, ended.time)
+        motion = self.motion
+        end = searched_until(float(np.max(times)), motion.ended)
         with np.errstate(over="ignore", invalid="ignore"):
             if motion.smooth:
                 phase, how = motion.phases[0], how_until(motion.phases, end)
-                expanded = end if ended is None or ended.kind not in OF_LENGTHS else BEFORE_SINGULAR * end
                 whole, finer = phase.models[0].whole, self.columns.finer
-                search = SmoothSearch(whole, how, phase.determined, end, expanded, accuracy, self._numerical, finer)
+                search = SmoothSearch(whole, how, phase.determined, end, accuracy, self._numerical, finer)
                 return search.found(self.outputs)
             pieces = list(stretches(motion, end))
             if not pieces:

@@ -30,6 +30,7 @@ from core.multibody.search.location import NotLocated, located
 from core.multibody.search.pieces import Expanded, repeats_after
 from core.multibody.table.description import Described
 from core.multibody.table.table import Row
+from core.multibody.trajectory.events import follows
 
 
 class SingularPlace(Exception):
@@ -153,14 +154,14 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
     last = left if period is None else min(left, period)
     reach, singular = min(last, _first_reach(phase)), None
     while True:
-        singular = _singular(phase, reach)
-        hit = search.until(reach if singular is None else singular * BEFORE_SINGULAR)
+        singular = _singular(phase, watched, reach)
+        hit = search.until(reach if singular is None else float(singular.time) * BEFORE_SINGULAR)
         if hit is not None or singular is not None or reach >= last:
             break
         reach = min(last, 2.0 * reach)
     if hit is None:
         if singular is not None:
-            raise SingularPlace(arb(singular), SINGULAR_TIME_ERROR * singular)
+            raise singular
         return []
     number, one = hit
     watch = watched[number]
@@ -219,18 +220,24 @@ def _first_reach(phase: Phase) -> float:
     return 2.0 * two_to(max(scales)) if scales else math.inf
 
 
-def _singular(phase: Phase, end: float) -> float | None:
-    """Return the time of a singular place before a time of a phase, None without one."""
+def _singular(phase: Phase, watched: Sequence[Watch], end: float) -> SingularPlace | None:
+    """Return the first singular place before a time of a phase, None without one."""
     found = []
     runs = {
         (id(model.whole), kind): model.whole
         for model, kind in zip([phase.models[0], phase.models[-1]], ("fine", "check"), strict=True)
     }
     for (_, kind), whole in runs.items():
-        for _, motion in whole.parts:
-            if not isinstance(motion, Numerical):
-                continue
-            run = motion.run(kind, end * two_to(-motion.units.time))
-            if run.singular and kind == "fine":
-                found.append(run.end * two_to(motion.units.time))
-    return min(found, default=None)
+        for indices, motion in whole.parts:
+            if isinstance(motion, Numerical):
+                run = motion.run(kind, end * two_to(-motion.units.time))
+                if run.singular and kind == "fine":
+                    time = run.end * two_to(motion.units.time)
+                    found.append(SingularPlace(arb(time), SINGULAR_TIME_ERROR * time))
+            elif (ended := motion.ended(end)) is not None:
+                # A closed form ends where a length is zero.
+                named = (
+                    one.one.name for one in watched if one.what == "length" and follows(whole, one.one.gap, indices)
+                )
+                found.append(SingularPlace(arb(ended[0]), ended[1], next(named, "")))
+    return min(found, key=lambda one: float(one.time), default=None)

@@ -88,6 +88,13 @@ def first_event(whole: Whole, ends: Sequence[End], end: float) -> MotionEvent | 
     return ended if best is None else best
 
 
+def searched_until(end: float, ended: MotionEvent | None) -> float:
+    """Return the time until which quantities are searched (s): not quite to a place where they may be unbounded."""
+    if ended is None:
+        return end
+    return min(end, BEFORE_SINGULAR * ended.time if ended.kind in OF_LENGTHS else ended.time)
+
+
 def _singular(whole: Whole, watched: Sequence[End], end: float) -> MotionEvent | None:
     """Return the first place at which the motion itself ends."""
     found = None
@@ -96,7 +103,7 @@ def _singular(whole: Whole, watched: Sequence[End], end: float) -> MotionEvent |
         if ended is not None:
             # A closed form ends where a length is zero, a series where connections lose their hold.
             named = watched if motion.how == "closed form" else []
-            name = next((limit.name for limit in named if _follows(whole, limit, indices)), "")
+            name = next((limit.name for limit in named if follows(whole, limit.length, indices)), "")
             found, end = MotionEvent("singular", name, *ended), ended[0]
     return found
 
@@ -173,14 +180,14 @@ def _safe(whole: Whole, limit: End) -> bool:
     if limit.length is None:
         return False
     for indices, motion in whole.parts:
-        if _follows(whole, limit, indices):
+        if follows(whole, limit.length, indices):
             number = {i: k for k, i in enumerate(indices)}
             length = substituted(limit.length, whole.reduced.expressions)
             return motion.keeps_positive({tuple(number[i] for i in key): x for key, x in length.items()})
     return False
 
 
-def _follows(whole: Whole, limit: End, indices: Sequence[int]) -> bool:
-    """Return whether a length is one of a part."""
-    length = substituted(limit.length or {}, whole.reduced.expressions)
-    return bool(length) and {key[0] for key in length if key} <= set(indices)
+def follows(whole: Whole, length: Poly | None, indices: Sequence[int]) -> bool:
+    """Return whether a length is one of a part, which has some of the reduced coordinates."""
+    reduced = substituted(length or {}, whole.reduced.expressions)
+    return bool(reduced) and {key[0] for key in reduced if key} <= set(indices)

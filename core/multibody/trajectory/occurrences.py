@@ -140,8 +140,8 @@ def unknown(search: ValueSearch | ExtremesOf, index: int, columns: Mapping[str, 
     )
 
 
-def not_taken(outputs: Sequence[object], occurrences: Sequence[Occurrence], end: float) -> Iterator[Notice]:
-    """Yield a notice for every search whose quantity does not take its value, or not as often as is asked for.
+def left_out(outputs: Sequence[object], occurrences: Sequence[Occurrence], end: float) -> Iterator[Notice]:
+    """Yield a notice for every search that found less than is asked for, or as much as is listed at most.
 
     Parameters
     ----------
@@ -161,6 +161,12 @@ def not_taken(outputs: Sequence[object], occurrences: Sequence[Occurrence], end:
                 f"{search.quantity} does not take the value {search.equals:g}{times} after the start until {end:g} s"
             )
             yield Notice("value-not-taken", detail, ("outputs", index, "when"))
+        elif len(own) == MOST_FOUND:
+            last = f"for the {MOST_FOUND}th time at {own[-1].time:g} s"
+            detail = (
+                f"{search.quantity} takes the value {search.equals:g} {last}; what follows until {end:g} s is left out"
+            )
+            yield Notice("occurrences-left-out", detail, ("outputs", index, "when"))
 
 
 def of_search(search: ValueSearch, found: list[Occurrence]) -> list[Occurrence]:

@@ -47,8 +47,6 @@ class SmoothSearch:
         Which of the forces the scene determines.
     end : float
         Latest time (s).
-    expanded : float
-        Time up to which the motion can be expanded (s): not quite to a singular place.
     accuracy : float
         Largest error of a quantity, relative to the largest value in columns of its unit, that is tolerated.
     numerical : bool
@@ -59,7 +57,6 @@ class SmoothSearch:
     how: How
     determined: Sequence[bool]
     end: float
-    expanded: float
     accuracy: float
     numerical: bool
     finer: bool
@@ -163,7 +160,7 @@ class SmoothSearch:
         assert sought is not None
         kinds = ("fine", "check") if self.finer and self.numerical else None
         runs = runs_of(self.whole) if kinds is None else [(self.whole, kind) for kind in kinds]
-        return SearchAlong(Expansions.of(runs, sought.follows), sought, sampler, self.end, self.expanded)
+        return SearchAlong(Expansions.of(runs, sought.follows), sought, sampler, self.end)
 
     def _sampler(self, search: ValueSearch | ExtremesOf, index: int) -> Sampler:
         """Return the samples of a quantity, from the columns among which it is."""

@@ -102,7 +102,9 @@ def view_of(answer: SceneSolution) -> View:
         for name, column in motion.columns.items():
             owner, _, what = name.rpartition(".")
             figures[f"column:{name}"] = Figure(column.values, column.unit, column.error, what, owner)
-    for found in answer.extremes or ():
+    # Just before a singular end values grow beyond bounds, and its time is not known from one form as from another.
+    bounded = answer.ended is None or answer.ended.kind != "singular"
+    for found in (answer.extremes or ()) if bounded else ():
         owner = found.quantity.partition(".")[0]
         values = np.array([[found.least, found.largest]])
         figures[f"extremes:{found.quantity}"] = Figure(values, found.unit, found.error, "extremes", owner)

@@ -286,6 +286,35 @@ def test_a_search_in_vain_leaves_a_notice(name: str) -> None:
     assert "until 0.4 s" in notices[1].detail
 
 
+def test_that_occurrences_are_left_out_is_noticed() -> None:
+    answer = solve_scene(PENDULUM, [1e6], ["trajectory", When("p0.position.x", 0), When("p0.position.x", 0, nth=1000)])
+    assert answer.trajectory is not None
+    (notice,) = (one for one in answer.trajectory.warnings if one.code == "occurrences-left-out")
+    assert notice.path == ("outputs", 1, "when")
+
+
+@pytest.mark.parametrize("beside", [[], [{"kind": "contact", "place": "b", "on": {"at": [0, -9]}}]])
+def test_what_grows_beyond_bounds_is_searched_to_just_before_its_end(beside: list[dict[str, Any]]) -> None:
+    """A fall into a centre: x (v^2/2 - mu/x + mu/h) = 0, x ~ (9 mu/2)^(1/3) (T - t)^(2/3), T = pi sqrt(h^3/(8 mu))."""
+    fall = {"kind": "inverse-square", "name": "sun", "a": "b", "b": [0, 0], "strength": 3}
+    scene = {"gravity": [0, 0], "bodies": {"b": {"mass": 1, "at": [0, 0.72]}}, "connections": [fall, *beside]}
+    asked = [ExtremesOf("b.velocity.length"), When("b.velocity.length", 1e6), When("b.velocity.length", 1000)]
+    answer = solve_scene(read(scene), [1.0], ["trajectory", *asked])
+    end = math.pi * math.sqrt(0.72**3 / 24)
+    assert answer.ended is not None
+    assert (answer.ended.kind, answer.ended.name) == ("singular", "sun")
+    assert abs(answer.ended.time - end) <= answer.ended.error + 1e-16
+    (speed,) = answer.extremes or ()
+    assert speed.largest_time == speed.until == answer.ended.time * (1 - 1e-9)
+    x = (13.5 * (end * 1e-9) ** 2) ** (1 / 3)
+    assert speed.largest == pytest.approx(math.sqrt(6 / x - 6 / 0.72), rel=1e-4)
+    (found,) = answer.occurrences or ()
+    assert found.equals == 1000.0
+    assert answer.trajectory is not None
+    (notice,) = answer.trajectory.warnings
+    assert notice.code == "value-not-taken"
+
+
 def test_extremes_of_a_quaternion_have_both_sides_of_a_jump() -> None:
     """Held against samples of the answer: they lie within the extremes, and come near to them."""
     scene = json.loads((SCENES / "thrown-body.json").read_text())
