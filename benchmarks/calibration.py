@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import statistics
 import sys
 import time
@@ -23,7 +22,7 @@ import numpy as np
 import orjson
 from scipy.optimize import nnls
 
-from benchmarks.machine import RESULTS, T_HANDLE, described
+from benchmarks.machine import T_HANDLE, described
 from core.bodies import measured as measured_bodies
 from core.bodies.measured import PrincipalMoments
 from core.errors import MechanicsError
@@ -295,25 +294,8 @@ def method_table() -> dict[str, dict[str, float]]:
     return table
 
 
-def held_out() -> list[tuple[str, dict[str, Any]]]:
-    """Return the questions of examples/ that nothing was fitted to, with the paths that they are for."""
-    files = sorted((ROOT / "examples").rglob("*.json"))
-    fitted_scenes = described_scenes()
-    found = []
-    for file in files:
-        document = json.loads(file.read_text(encoding="utf-8"))
-        if document in fitted_scenes:
-            continue
-        path = "/v1/" + str(file.parent.relative_to(ROOT / "examples"))
-        if path == "/v1/studies":
-            # Its price is that of its members, which the request of a study does not compute.
-            continue
-        found.append((path if file.parent != ROOT / "examples" else "/v1/rotation/trajectory", document))
-    return found
-
-
 def main(*operations: str) -> None:
-    """Measure, fit, write, and compare with what was not fitted; all operations unless some are named."""
+    """Measure, fit and write; all operations unless some are named."""
     routes = {route.operation_id: route for route in questions()}
     answering, budget = RequestHandler(routes.values(), Budget(), Limits()), Budget()
     # What is not measured yet keeps its old costs meanwhile.
@@ -357,50 +339,7 @@ def main(*operations: str) -> None:
     if writings:
         table["writing"] = float(f"{statistics.median(w / n for w, n in zip(writings, lengths, strict=True)):.3g}")
     TARGET.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
-    pricing.calibration.cache_clear()
-    compare(answering)
-
-
-def compare(answering: RequestHandler) -> None:
-    """Write and print what the plan foresees over what is measured, of questions to which nothing was fitted."""
-    routes = {route.path: route for route in questions()}
-    result = []
-    for path, question in held_out():
-        route = routes.get(path)
-        if route is None:
-            continue
-        try:
-            body = orjson.dumps({"path": path, "request": question})
-            foreseen = answering.answer(routes[PLAN], answering.read(routes[PLAN], body))["cost"]
-            seconds, length, writing = measured_cost(answering, route, question)
-        except Exception as refused:
-            print(path, "refused:", type(refused).__name__)
-            continue
-        if foreseen is None:
-            # Assessments are not planned.
-            continue
-        milliseconds = 1e3 * (seconds + writing)
-        entry = {"path": path, "milliseconds": round(milliseconds, 3), "bytes": int(length)}
-        entry["time_ratio"] = round(foreseen["milliseconds"] / milliseconds, 3)
-        entry["bytes_ratio"] = round(foreseen["bytes"] / length, 3)
-        result.append(entry)
-        print(entry)
-    within = {name: sum(bool(0.5 <= entry[f"{name}_ratio"] <= 2.0) for entry in result) for name in ("time", "bytes")}
-    ratios = sorted(entry["time_ratio"] for entry in result)
-    document = {
-        "machine": described("numpy"),
-        "load_average": os.getloadavg(),
-        "questions_asked": len(result),
-        "within_a_factor_of_2": within,
-        "time_ratio": {"least": ratios[0], "median": statistics.median(ratios), "most": ratios[-1]},
-        "questions": result,
-    }
-    print({name: value for name, value in document.items() if name != "questions"})
-    (RESULTS / "calibration.json").write_text(json.dumps(document, indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--check"]:
-        compare(RequestHandler(questions(), Budget(), Limits()))
-    else:
-        main(*sys.argv[1:])
+    main(*sys.argv[1:])

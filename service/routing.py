@@ -37,29 +37,11 @@ class Reply:
     status: int = 200
 
 
-@dataclass(frozen=True)
-class PlanningProbe:
-    """The answer to a question that costs little and has the model, the warnings and the refusals of another.
+class ExpectedDuration(NamedTuple):
+    """How long an answer takes, by order of magnitude, and what that is known from."""
 
-    Attributes
-    ----------
-    fields : mapping
-        Of the answer.
-    growth : mapping of str to float
-        Fields that are longer in the other answer, and how many times as long.
-    error : float or None
-        Order of magnitude of the error of a method that is named, of which few steps are run.
-    exact : mapping
-        Fields of the answer in closed form beside that.
-    seconds : float or None
-        Time of what is planned, where that is not the price of the request itself.
-    """
-
-    fields: Answer
-    growth: Mapping[str, float] = field(default_factory=dict)
-    error: float | None = None
-    exact: Answer = field(default_factory=dict)
-    seconds: float | None = None
+    duration: str
+    why: str
 
 
 class ManyFigures(NamedTuple):
@@ -110,8 +92,6 @@ class PostRoute:
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
     small : callable
         Whether a question may be begun in the event loop, by counts that it states; decided without computing anything.
-    planning_probe : callable or None
-        From question and budget to the `PlanningProbe` by which it is planned; None if that is the answer itself.
     examples : mapping
         By a short name.
     warming : sequence of mappings
@@ -123,6 +103,9 @@ class PostRoute:
         under their names, and what the bounds rest on.
     elsewhere : mapping
         Fields that belong to another route, each with the remedy for who sends it here.
+    in_short : sequence of callables
+        What takes the place of `handle` where that uses more than the slice of the short class, the first first; each
+        is ended in turn when it has used a slice, but for the last.
     many : callable or None
         From a request that can be read, columns of numbers that take the place of some of its own, and the paths of
         figures to the figures of all these questions, to the bit those of `handle`; None for what it cannot do.
@@ -137,15 +120,25 @@ class PostRoute:
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
     small: Callable[[Any], bool] = never
-    planning_probe: Callable[[Any, Budget], PlanningProbe] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     warming: Sequence[Mapping[str, Any]] = ()
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     errors: Callable[[Any, Budget], tuple[Answer, str]] | None = None
+    in_short: Sequence[Callable[[Any, Budget], Answer]] = ()
     many: Callable[[Any, Columns, Sequence[Path]], ManyFigures | None] | None = None
     method: str = "POST"
+
+    @property
+    def duration(self) -> ExpectedDuration:
+        """How long a question takes that is not answered at once."""
+        why = "it was not answered within 20 ms of processor time; more is known only by running it"
+        return ExpectedDuration("seconds", why)
+
+    def answer_for_plan(self, question: Any, budget: Budget) -> Answer | None:
+        """Return the answer, or None for a question that is planned without one."""
+        return self.handle(question, budget)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,6 +152,15 @@ class StudyRoute(PostRoute):
     """
 
     members: Callable[[Any, Budget], Any]
+
+    @property
+    def duration(self) -> ExpectedDuration:
+        """How long a study takes."""
+        return ExpectedDuration("minutes", "a study is computed in the background, after other studies of its client")
+
+    def answer_for_plan(self, question: Any, budget: Budget) -> Answer | None:
+        """Return None: the question that is varied is not run."""
+        return None
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from service.execution import PRELOAD
-from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, SliceUsed, Stopped, WorkerDied
 from service.execution.messages import decoded, encoded
 from service.execution.worker import Failed, Task, serve, terms_of
 from service.execution.worker_pool import Processes
@@ -123,8 +123,10 @@ class Compute:
             raise Refusal("not-ready", "the compute processes are not up yet", retry_after=1.0)
         with self.holding(len(body)):
             self._require_turn(sender)
-            document: Document = await self._done(Task(route.path, body, npz, media), sender)
-            return document
+            for attempt in range(len(route.in_short)):
+                with contextlib.suppress(SliceUsed):
+                    return await self._done(Task(route.path, body, npz, media, attempt), sender, may_be_long=False)
+            return await self._done(Task(route.path, body, npz, media, len(route.in_short)), sender)
 
     def _require_turn(self, sender: Sender) -> None:
         most = self._settings.max_held_bytes
@@ -139,10 +141,12 @@ class Compute:
             )
             raise Refusal("too-busy", detail, retry_after=max(1.0, waited))
 
-    async def _done(self, task: Task, sender: Sender) -> Any:
+    async def _done(self, task: Task, sender: Sender, *, may_be_long: bool = True) -> Document:
         """Return what a process replies, or raise why it does not; time and key are settled however it ends."""
         deadline = self._settings.deadline_seconds
-        job = self.processes.submit(encoded(task), sender.client, longest=deadline, patience=deadline)
+        job = self.processes.submit(
+            encoded(task), sender.client, longest=deadline, patience=deadline, may_be_long=may_be_long
+        )
         watch = asyncio.ensure_future(sender.gone())
         try:
             await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
@@ -160,6 +164,7 @@ class Compute:
             raise Refusal.of(result)
         if isinstance(result, Failed):
             raise RuntimeError(f"in a compute process:\n{result.traceback}")
+        assert isinstance(result, Document)
         return result
 
     def _result(self, job: Job) -> Any:

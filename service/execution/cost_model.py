@@ -96,6 +96,11 @@ def one(question: Any, budget: Budget) -> Counts:
     return {"question": 1.0}
 
 
+def in_closed_form(method: Any) -> bool:
+    """Return whether nothing is to be integrated."""
+    return method is None or bool(method.kind == "closed-form")
+
+
 def setting(method: Any) -> tuple[str, float]:
     """Return the name and the value of a method's setting."""
     name = "step" if hasattr(method, "step") else "tolerance"
@@ -104,7 +109,7 @@ def setting(method: Any) -> tuple[str, float]:
 
 def evaluations(method: Any, times: Sequence[float] | Any, speed: float) -> float:
     """Return how often a method is predicted to evaluate the equation of a rotation with `speed` (rad/s)."""
-    if method is None or method.kind == "closed-form":
+    if in_closed_form(method):
         return 0.0
     name, value = setting(method)
     costs = calibration().methods[method.kind]
@@ -112,17 +117,6 @@ def evaluations(method: Any, times: Sequence[float] | Any, speed: float) -> floa
         return costs["evaluations"] * steps(times, value)
     turned = speed * extent(times) if speed else 0.0
     return min(UNCOUNTABLE, _power(costs["evaluations"] + costs["exponent"] * log(value)) * (turned + 1.0))
-
-
-def error_of(method: Any, times: Sequence[float] | Any, speed: float) -> float:
-    """Return the order of magnitude of a method's error on a rotation, at most 2."""
-    name, value = setting(method)
-    costs = calibration().methods[method.kind]
-    # A step is judged by how far the body turns meanwhile.
-    small = value * speed if name == "step" else value
-    if small == 0.0 or speed == 0.0:
-        return 0.0
-    return min(2.0, _power(costs["error"] + costs["error_exponent"] * log(small)) * (speed * farthest(times) + 1.0))
 
 
 def speed_of(rates: Sequence[float]) -> float:
@@ -161,7 +155,7 @@ def _power(logarithm: float) -> float:
 
 def effort(method: Any, times: Any, speed: float, samples: float, members: int = 1) -> dict[str, float]:
     """Return what is counted of a method that is run."""
-    if method is None or method.kind == "closed-form":
+    if in_closed_form(method):
         return {}
     kind = method.kind
     return {
@@ -176,7 +170,7 @@ def judged(method: Any, times: Any, speed: float, budget: Budget, members: int =
 
     No method can follow such a motion: each member spends the budget of evaluations on a finer one in vain.
     """
-    if method is None or method.kind == "closed-form" or speed * farthest(times) <= LARGEST_QUARTER:
+    if in_closed_form(method) or speed * farthest(times) <= LARGEST_QUARTER:
         return {}
     return {"judging evaluations": float(budget.evaluations) * members}
 
@@ -208,11 +202,6 @@ def extent(times: Any) -> float:
 def farthest(times: Any) -> float:
     """Return the largest distance from the start (s)."""
     return max(map(abs, ends_of(times)))
-
-
-def extreme(times: Any) -> float:
-    """Return the time that is farthest from the start (s)."""
-    return max(ends_of(times), key=abs)
 
 
 def ends_of(times: Any) -> list[float]:

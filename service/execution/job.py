@@ -17,6 +17,10 @@ class DeadlineExceeded(Exception):
     """The request was worked on for longer than it may be; its process was killed."""
 
 
+class SliceUsed(Exception):
+    """The request, which is not to become long, used its slice; its process was killed."""
+
+
 class QueueTimeout(Exception):
     """No process became free for the request in time."""
 
@@ -38,14 +42,18 @@ class Job:
         Who sent it; clients have their turns in rotation.
     longest : float
         How long it may run (s).
+    may_be_long : bool
+        Whether it goes on in the long class when it has used its slice, or is ended.
     reply : asyncio.Future of memoryview
-        Fails with `WorkerDied`, `DeadlineExceeded`, `QueueTimeout`, `Crowded` or `Stopped`.
+        Fails with `WorkerDied`, `DeadlineExceeded`, `SliceUsed`, `QueueTimeout`, `Crowded` or `Stopped`.
     begun : bool
         Whether a process works on it, or has.
     """
 
-    def __init__(self, request: Sequence[Buffer], client: Hashable, longest: float) -> None:
-        self.request, self.client, self.longest = request, client, longest
+    def __init__(
+        self, request: Sequence[Buffer], client: Hashable, longest: float, *, may_be_long: bool = True
+    ) -> None:
+        self.request, self.client, self.longest, self.may_be_long = request, client, longest, may_be_long
         self.reply: asyncio.Future[memoryview] = asyncio.get_running_loop().create_future()
         self.submitted = perf_counter()
         self.begun = False

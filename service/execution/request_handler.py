@@ -34,9 +34,9 @@ class RequestHandler:
         """Return the predicted time of an answer (s), or raise `BudgetExceeded`."""
         return route.price(question, self._budget)
 
-    def answer(self, route: PostRoute, question: Any) -> Answer:
-        """Return the whole answer: signature, warnings, fields."""
-        return signed(route.handle(question, self._budget))
+    def answer(self, route: PostRoute, question: Any, attempt: int = 0) -> Answer:
+        """Return the whole answer: signature, warnings, fields; from the second attempt on by `PostRoute.in_short`."""
+        return signed((route.handle, *route.in_short)[attempt](question, self._budget))
 
     def warm(self, *, scenes_first: bool = False) -> None:
         """Have every kernel that can be reached compiled or loaded, so that no client waits for that.

@@ -64,12 +64,15 @@ class Task:
         Whether the body is a numpy archive; otherwise it is JSON.
     media : str or None
         Media type of the document, None for JSON.
+    attempt : int
+        How many attempts have used more than the slice of the short class.
     """
 
     path: str
     body: bytes
     npz: bool
     media: str | None
+    attempt: int = 0
 
 
 @dataclass(frozen=True)
@@ -119,7 +122,7 @@ def answer(terms: Terms, task: Task) -> Document | Problem | Failed:
         question = handler.read(route, task.body, npz=task.npz)
         # Refuses what exceeds the budget.
         handler.price(route, question)
-        return composed(route, handler.answer(route, question), task.media)
+        return composed(route, handler.answer(route, question, task.attempt), task.media)
     except Refusal as refusal:
         return refusal.problem
     except MechanicsError as error:

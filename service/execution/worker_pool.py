@@ -20,7 +20,7 @@ from typing import Any
 
 from service.execution.fair_queue import FairQueue
 from service.execution.fair_shares import QUANTUM, FairShares
-from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, SliceUsed, Stopped, WorkerDied
 from service.execution.messages import Buffer
 from service.execution.process_starter import ProcessStarter
 from service.execution.worker_process import Process
@@ -130,7 +130,15 @@ class Processes:
         self._keep_up()
         await self._up.wait()
 
-    def submit(self, request: Sequence[Buffer], client: Hashable, *, longest: float, patience: float) -> Job:
+    def submit(
+        self,
+        request: Sequence[Buffer],
+        client: Hashable,
+        *,
+        longest: float,
+        patience: float,
+        may_be_long: bool = True,
+    ) -> Job:
         """Have a request answered.
 
         Parameters
@@ -142,8 +150,10 @@ class Processes:
             Time for which it may run; its process is then killed (s).
         patience : float
             Time that it may wait for its turn (s).
+        may_be_long : bool
+            Whether it is moved to the long class when it has used its slice; otherwise its process is then killed.
         """
-        job = Job(request, client, longest)
+        job = Job(request, client, longest, may_be_long=may_be_long)
         if self._stopping:
             job.fail(Stopped())
             return job
@@ -279,6 +289,9 @@ class Processes:
         left = self._slice - process.used
         if left > 0.0 and job.seconds < SLICES_OF_TIME * self._slice:
             asyncio.get_running_loop().call_later(max(left, 0.1 * self._slice), self._sliced, job)
+            return
+        if not job.may_be_long:
+            self._give_up(job, SliceUsed())
             return
         # Some may have begun before others came to divide the room with.
         if len(self._long) >= MOST_LONG + self.size:

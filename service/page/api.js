@@ -51,16 +51,6 @@ async function content(response) {
   return document;
 }
 
-/** Seconds that the service predicts for a question; null if it does not plan it. */
-async function predicted({ path, body }, signal) {
-  try {
-    const { answer } = await ask("/v1/plan", `{"path": ${JSON.stringify(path)}, "request": ${body}}`, signal);
-    return answer.cost && answer.cost.milliseconds / 1000;
-  } catch {
-    return null;
-  }
-}
-
 /** Runs one piece of work at a time and shows in `panel` when it takes longer than a second; it can be cancelled there. */
 export class Worker {
   constructor(panel) {
@@ -74,21 +64,16 @@ export class Worker {
   async run(work) {
     this.running?.abort(new DOMException("replaced", "AbortError"));
     const mine = (this.running = new AbortController());
-    let sent = { at: performance.now() };
+    let since = performance.now();
     const send = (path, question) => {
-      sent = { path, body: typeof question === "string" ? question : JSON.stringify(question), at: performance.now() };
-      return ask(path, sent.body, mine.signal);
+      since = performance.now();
+      return ask(path, question, mine.signal);
     };
-    const timer = setInterval(async () => {
-      const current = sent, seconds = (performance.now() - current.at) / 1000;
+    const timer = setInterval(() => {
+      const seconds = (performance.now() - since) / 1000;
       if (seconds < 1 || this.running !== mine) return;
       this.panel.hidden = false;
-      const expected = current.expected ? ` of about ${Math.max(1, current.expected).toFixed(0)} s` : "";
-      this.text.textContent = `The service is computing: ${seconds.toFixed(0)} s${expected}`;
-      if (current.expected === undefined) {
-        current.expected = null;
-        current.expected = await predicted(current, mine.signal);
-      }
+      this.text.textContent = `The service is computing: ${seconds.toFixed(0)} s`;
     }, 250);
     try {
       return await work(send);

@@ -165,8 +165,8 @@ $("price").addEventListener("click", () => send(async (text) => {
   const { answer } = await ask("/v1/plan", { path: STUDIES, request: JSON.parse(text) });
   // The study is the request of the plan.
   const errors = answer.errors?.map((fault) => ({ ...fault, pointer: fault.pointer.replace(/^\/request(?=\/|$)/, "") }));
-  if (!answer.answerable) throw Object.assign(new Error(), { errors });
-  $("told").textContent = `${written(answer.cost.milliseconds / 1000, 3)} s of one processor`;
+  if (answer.answerable === false) throw Object.assign(new Error(), { errors });
+  $("told").textContent = `${answer.cost.members} members; ${answer.why}`;
 }));
 $("start").addEventListener("click", () => send(async (text) => { follow((await ask(STUDIES, text)).answer).catch(tell); }));
 onTheme(() => shown && draw());

@@ -7,9 +7,6 @@ from decimal import Decimal
 from math import isfinite, log
 from typing import Any
 
-import numpy as np
-
-from core.errors import BudgetExceeded
 from core.multibody.answer import RestRange
 from core.multibody.language.scene import check_size
 from core.multibody.model_answer import SceneModel, SmallMotion
@@ -19,15 +16,13 @@ from core.multibody.trajectory.inherited import MOST_PROPAGATED_NUMBERS
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.from_scipy import FromSciPy
-from core.work import WorkLimitReached, work_limit
-from service.execution.cost_model import CalibratedCost, evaluations, extent
+from service.execution.cost_model import CalibratedCost, evaluations, extent, in_closed_form
 from service.requests.described_scene import DescribedSceneRequest, SceneDescription
 from service.responses.svg import SVG
 from service.routes.described_answer import UNDECIDED_PATH, DescribedAccuracy, DescribedSceneAnswer, SceneColumn
 from service.routes.motion_figures import draw_described
-from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routes.scene_catalogue import scene_catalogue
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import Request, View, fields_of, sample_count, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
@@ -48,18 +43,11 @@ answer lists the phases between the events, each with its own smallest model. Wh
 answer too: `problem` says what, and which assumption would decide it.
 
 Not covered yet: friction of balls on one another in space, friction of held connections, connections with `from` and
-`until`. They are refused. It is not proven that all equilibria are found. A plan
-reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
-about three bodies. `Accept: image/svg+xml` draws the paths of a motion in the plane, and its columns over time."""
-
-NEAR = 0.01
-"""How far (s) a motion is followed when it is planned."""
+`until`. They are refused. It is not proven that all equilibria are found.
+`Accept: image/svg+xml` draws the paths of a motion in the plane, and its columns over time."""
 
 QUICK = 10.0
 """How fast (rad/s) a scene is taken to move, where a method chooses its steps."""
-
-SEARCHED = 10_000.0
-"""Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
 VALUES = 270.0
 """About the most values of a number at which rest is looked for: 64 on either side, some 70 halvings for each end."""
@@ -266,46 +254,6 @@ def numbers_in(question: DescribedSceneRequest) -> int:
     return among([question.gravity, question.bodies, question.connections, question.let])
 
 
-def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
-    """Answer a question at few times near the start, where the rows are as long; its error is known from the whole."""
-    if question.times is None:
-        return PlanningProbe(_without_long_searches(question, budget))
-    instants = sample_times(question.times, budget)
-    few = instants[few_of(instants.size)]
-    reach = min(NEAR, FEW_STEPS * getattr(question.method, "step", NEAR))
-    near = few * min(1.0, reach / max(reach, float(np.abs(few).max())))
-    changes: dict[str, Any] = {"times": near.tolist(), "input_uncertainty": None}
-    if question.outputs is not None:
-        along = _along(question)
-        changes["outputs"] = [one for one in question.outputs if one not in along] or ["trajectory"]
-    fields = _without_long_searches(question.model_copy(update=changes), budget)
-    if hasattr(question.method, "step"):
-        _require_affordable(question, fields["model"], budget)
-    fields["warnings"] = [notice for notice in fields["warnings"] if notice.code not in OF_FEW_STEPS]
-    del fields["accuracy"]
-    return PlanningProbe(fields, {"trajectory": instants.size / few.size})
-
-
-def _require_affordable(question: DescribedSceneRequest, model: Mapping[str, Any], budget: Budget) -> None:
-    """Raise `BudgetExceeded` for a step with which more evaluations are needed than are allowed."""
-    count = evaluations(question.method, question.times, QUICK)
-    allowed = budget.evaluations // weight_of(model["coordinates"] + model["rows"])
-    if count > allowed:
-        remedy = "use a larger step, or ask for earlier times"
-        raise BudgetExceeded("evaluations", int(count), allowed, path=("method", "step"), remedy=remedy)
-
-
-def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> Answer:
-    """Answer a question, without its equilibria if looking for them takes long."""
-    try:
-        with work_limit(SEARCHED):
-            return solved(question, budget)
-    except WorkLimitReached:
-        long = ["equilibria", *_thresholds(question)]
-        others = question.outputs and [one for one in question.outputs if one not in long]
-        return solved(question.model_copy(update={"outputs": others}), budget)
-
-
 HEAVY_BODY = scene_catalogue()["kovalevskaya-top"].question
 TURNING_SLIP = {**scene_catalogue()["stone-across-slope"].question, "times": [0.01]}
 BY_METHOD = {
@@ -324,7 +272,6 @@ DESCRIBED_SCENES = (
         DescribedSceneAnswer,
         solved,
         CalibratedCost(OPERATION, counted),
-        planning_probe=probed,
         # A heavy body about a point has kernels of its own, one of them for its start alone; so have a named method and
         # a slip that turns.
         warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, BY_METHOD, TURNING_SLIP),

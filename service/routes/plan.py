@@ -1,32 +1,36 @@
-"""Any other question, planned: what it would be answered with, at which cost and error; it is not answered."""
+"""Any other question, planned: what it would be answered with, at which cost and error.
+
+The request is run. A plan that has used its slice of processor time is ended and made again from less: from the request
+at its first time alone, then without running it (`PostRoute.in_short`).
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from functools import cache
-from typing import Annotated, Any
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
+from typing import Any, Literal
 
 from pydantic import Field
 
 from core.errors import BudgetExceeded, MechanicsError
-from core.notices import Notice
-from core.quantities import Unit
 from core.systems.budget import Budget
 from core.systems.methods import Method
-from service.execution.cost_model import UNCOUNTABLE, CalibratedCost, calibration, one
+from service.execution.cost_model import evaluations as evaluations_of
+from service.execution.cost_model import in_closed_form
 from service.execution.request_handler import signed
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
-from service.responses.json_rows import written
+from service.responses.json_stream import composed
 from service.routes.described_answer import ScenePart
-from service.routes.planning_probes import OF_FEW_STEPS, in_closed_form
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routing import Answer, ExpectedDuration, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
 
 WITHIN = "/request"
+
+WITHIN_SLICE = ExpectedDuration("immediate", "it was answered within 20 ms of processor time")
 
 
 class PlanRequest(Request):
@@ -52,15 +56,15 @@ class PlannedModel(View):
 
 
 class PlannedCost(View):
-    """What an answer would cost. Counts and bytes hold on every machine, milliseconds on the calibrated one, idle.
+    """What an answer costs, where that is counted exactly: it holds on every machine."""
 
-    Waiting for a turn is not foreseen, nor the time that the answer travels.
-    """
-
-    evaluations: int | None = Field(description="Of equations of motion; null if they are not foreseen.")
+    evaluations: int | None = Field(
+        description="Of equations of motion; null if the method chooses its steps and the question was not run to its "
+        "end."
+    )
     samples: int | None = Field(description="Of the motion; null where none is sampled.")
-    bytes: int = Field(description="Length of the answer as JSON.")
-    milliseconds: Annotated[float, Unit("ms")] = Field(description="Time of computing and writing the answer.")
+    members: int | None = Field(default=None, description="Of a study.")
+    bytes: int | None = Field(description="Length of the answer as JSON; null if the question was not run to its end.")
 
 
 class PlannedError(View):
@@ -69,7 +73,7 @@ class PlannedError(View):
     error: Ratio[float] | Ratio[DecimalString] = Field(
         description="A decimal string for certified questions, then relative to each number."
     )
-    how: str = Field(description="closed form: a bound; record of the method: an order of magnitude.")
+    how: str = Field(description="As in the answer.")
     inherited: Ratio[float] | None = Field(
         description="Error propagated from the uncertainty of the inputs; null where nothing is known of the phase."
     )
@@ -81,15 +85,28 @@ class PlannedFault(FaultView):
     code: str = Field(description="Of the problem.")
 
 
+Duration = Literal["immediate", "seconds", "minutes", "beyond the limit"]
+
+
 class PlanAnswer(Envelope):
     """A plan."""
 
     path: str = Field(description="As in the request.")
-    answerable: bool = Field(description="Whether the request would be answered.")
+    answerable: bool | None = Field(
+        description="Whether the request would be answered; null where that is known only by running it to its end."
+    )
+    duration: Duration | None = Field(
+        description="immediate: within 20 ms of processor time; seconds: longer, up to the deadline of a request, at "
+        "which it is ended; minutes: a study; beyond the limit: refused for its size; null where it is refused "
+        "otherwise."
+    )
+    why: str | None = Field(description="What the duration is known from; null where the request would be refused.")
     model: PlannedModel | None = Field(description="null for questions that no model of motion is chosen for.")
     method: Method | None = Field(description="null where no motion is computed.")
     cost: PlannedCost | None = Field(description="null if the request would be refused.")
-    accuracy: PlannedError | None = Field(description="null where no error is stated.")
+    accuracy: PlannedError | None = Field(
+        description="null where no error is stated, or the question was not run to its end."
+    )
     errors: list[PlannedFault] = Field(description="What the request would be refused for.")
 
 
@@ -102,7 +119,7 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
         # The document that holds the request has been held against the service's own limits.
         return Reader(table[path].question, Limits(10**4, 10**9, 10**9, 10**9), table[path].elsewhere)
 
-    def plan(question: PlanRequest, budget: Budget) -> Answer:
+    def plan(planned: Planned, question: PlanRequest, budget: Budget) -> Answer:
         route = table.get(question.path)
         if route is None:
             near = nearest_path(question.path, table)
@@ -111,7 +128,9 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
             return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
         try:
             request = reader(route.path).read(json.dumps(question.request).encode())
-            return {"path": route.path, **_planned(route, request, budget)}
+            # Refuses what exceeds the budget.
+            route.price(request, budget)
+            return {"path": route.path, **planned(route, request, budget)}
         except Refusal as refusal:
             return _refused(route.path, refusal.problem, WITHIN)
         except MechanicsError as error:
@@ -124,53 +143,73 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
         "accuracy",
         PlanRequest,
         PlanAnswer,
-        plan,
-        CalibratedCost("plan", one),
-        description="Always answered with 200: what the request would be refused for stands under `errors`.",
+        partial(plan, _run),
+        description="Always answered with 200: what the request would be refused for stands under `errors`. The "
+        "request is run for at most 20 ms of processor time; how long one takes that is not answered by then, and "
+        "whether it is answered, is known only by running it.",
+        in_short=(partial(plan, _run_at_start), partial(plan, _unrun)),
     )
 
 
-def _planned(route: PostRoute, request: Any, budget: Budget) -> Answer:
-    seconds = route.price(request, budget)
-    method, evaluations = getattr(request, "method", None), _evaluations(route, request, budget)
-    probed = route.planning_probe
-    probe = PlanningProbe(route.handle(request, budget)) if probed is None else probed(request, budget)
-    seconds = seconds if probe.seconds is None else probe.seconds
-    fields, exact = probe.fields, probe.exact
-    length = _length(fields, probe.growth)
-    model, stated, notices = fields.get("model"), _stated(fields), list(fields.get("warnings", ()))
-    if model is None and fields.get("members"):
-        model = fields["members"][0]["model"]
-    if probe.error is not None:
-        notices = [notice for notice in (exact or fields)["warnings"] if notice.code not in OF_FEW_STEPS]
-        if probe.error > request.accuracy:
-            detail = f"with this setting the error of {request.method.kind} is of the order of {probe.error:.1g}"
-            notices.append(Notice("accuracy-not-reached", detail, ("method",)))
-        inherited = (_stated(exact) or {}).get("inherited")
-        stated = {"error": probe.error, "how": "record of the method", "inherited": inherited}
-    elif stated:
-        method = {"kind": "closed-form"}
+Planned = Callable[[PostRoute, Any, Budget], Answer]
+"""How a question to a route is planned."""
+
+
+def _run(route: PostRoute, request: Any, budget: Budget) -> Answer:
+    """Plan a question by its answer."""
+    evaluations = _evaluations(request, budget)
+    found = route.answer_for_plan(request, budget)
+    if found is None:
+        return _unrun(route, request, budget)
+    length = len(composed(route, signed(found), None).whole())
+    done = found.get("work")
+    evaluations = evaluations if done is None else done.evaluations
+    plan = _plan(request, found, evaluations) | WITHIN_SLICE._asdict()
+    plan["cost"]["bytes"] = length
+    warnings = [notice.inside("request") for notice in found.get("warnings", ())]
+    return plan | {"answerable": True, "accuracy": _stated(found), "warnings": warnings}
+
+
+def _run_at_start(route: PostRoute, request: Any, budget: Budget) -> Answer:
+    """Plan a question by the answer at its first time alone, where it has one."""
+    times = getattr(request, "times", None)
+    if times is None:
+        return _unrun(route, request, budget)
+    first = times[0] if isinstance(times, list) else times.start
+    try:
+        found = route.handle(request.model_copy(update={"times": [first]}), budget)
+    except MechanicsError:
+        # The question as a whole may be answered.
+        return _unrun(route, request, budget)
+    return _plan(request, found, _evaluations(request, budget)) | route.duration._asdict()
+
+
+def _unrun(route: PostRoute, request: Any, budget: Budget) -> Answer:
+    """Plan a question by what it states."""
+    return _plan(request, {}, _evaluations(request, budget)) | route.duration._asdict()
+
+
+def _plan(request: Any, fields: Answer, evaluations: int | None) -> Answer:
+    """Return what a plan has of a question that is not answered, with the model of an answer at its start."""
+    model = fields.get("model")
+    members = fields.get("members")
+    if model is None and members:
+        model = members[0]["model"]
+    method = getattr(request, "method", None)
     return {
-        "answerable": True,
+        "answerable": None,
         "model": model,
-        "method": method,
+        "method": {"kind": "closed-form"} if method is None and _stated(fields) else method,
         "cost": {
             "evaluations": evaluations,
             "samples": _samples(request),
-            "bytes": round(length),
-            "milliseconds": round(1e3 * (seconds + length * calibration().writing), 3),
+            "members": _members(request),
+            "bytes": None,
         },
-        "accuracy": stated,
+        "accuracy": None,
         "errors": [],
-        "warnings": [notice.inside("request") for notice in notices],
+        "warnings": [],
     }
-
-
-def _length(fields: Answer, growth: Mapping[str, float]) -> float:
-    """Return the length of an answer as JSON, of which some fields are so many times as long as those given."""
-    entries = signed(fields).items()
-    # Quotes, colon and comma of each entry, and the braces around all.
-    return 1.0 + sum(len(name) + 4 + len(written(value)) * growth.get(name, 1.0) for name, value in entries)
 
 
 def _stated(fields: Answer) -> dict[str, Any] | None:
@@ -184,21 +223,22 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
     return {"error": worst["error"], "how": worst["how"], "inherited": worst.get("inherited")}
 
 
-def _evaluations(route: PostRoute, request: Any, budget: Budget) -> int | None:
-    if not isinstance(route.price, CalibratedCost):
-        return 0
-    counted = route.price.counts(request, budget)
-    # How many steps ladders take, and methods that choose them in scenes, is only known by running them.
+def _evaluations(request: Any, budget: Budget) -> int | None:
+    """Return the number of evaluations of a method with a fixed step, or refuse them; 0 where none is run."""
     method = getattr(request, "method", None)
-    fixed = hasattr(method, "step")
-    scene = "connections" in counted or ("motions" in counted and not in_closed_form(method))
-    if "ladders" in counted or (scene and not fixed):
+    if in_closed_form(method) or request.times is None:
+        return 0 if getattr(request, "methods", None) is None else None
+    if not hasattr(method, "step"):
         return None
-    count = round(min(UNCOUNTABLE, sum(n for name, n in counted.items() if name.startswith("evaluations of "))))
-    if fixed and count > budget.evaluations:
+    count = round(evaluations_of(method, request.times, 0.0))
+    if count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
     return count
+
+
+def _members(request: Any) -> int | None:
+    return request.all_members().members if hasattr(request, "all_members") else None
 
 
 def _samples(request: Any) -> int | None:
@@ -216,5 +256,6 @@ def _refused(path: str, problem: Problem, within: str) -> Answer:
     for fault in faults[:MOST_FAULTS]:
         entry = {"code": problem.type.code, "pointer": within + fault.pointer, "detail": fault.detail}
         errors.append(entry | {"remedy": fault.remedy} if fault.remedy else entry)
-    nothing = dict.fromkeys(("model", "method", "cost", "accuracy"))
-    return {"path": path, "answerable": False, **nothing, "errors": errors, "warnings": []}
+    nothing = dict.fromkeys(("why", "model", "method", "cost", "accuracy"))
+    duration = "beyond the limit" if problem.type.code == "budget-exceeded" else None
+    return {"path": path, "answerable": False, "duration": duration, **nothing, "errors": errors, "warnings": []}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
-from functools import cache, partial
+from functools import cache
 from typing import Any, Generic, Literal, cast, get_type_hints
 
 from pydantic import Field, create_model
@@ -13,18 +13,16 @@ from core.quantities import Tolerance, members_of
 from core.scenes import Scene
 from core.scenes.figures import Errors, SceneEvent
 from core.scenes.named_scene import NamedScene
-from core.scenes.sampled_motion import ComparableEquation
 from core.systems.budget import Budget
 from core.systems.methods import Method, SymmetricSplitting
 from core.systems.system import Model
-from core.systems.trajectory import HORIZON, Work
-from service.execution.cost_model import CalibratedCost, calibration, effort, numbers
+from core.systems.trajectory import Work
+from service.execution.cost_model import CalibratedCost, calibration, effort, in_closed_form, numbers
 from service.responses.svg import SVG
 from service.routes.bodies import few_times
 from service.routes.motion_figures import scene_drawing
-from service.routes.planning_probes import FEW, few_of, in_closed_form, in_few_steps
 from service.routes.rotation.trajectory import Accuracy, accuracy_fields
-from service.routing import Answer, Example, PlanningProbe, PostRoute
+from service.routing import Answer, Example, PostRoute
 from service.schemas import (
     ROUND,
     Envelope,
@@ -217,47 +215,6 @@ def _effort(question: Any, samples: int) -> dict[str, float]:
     return found | {splitting: found[splitting] * 3.0 / 5.0} if splitting in found else found
 
 
-def scene_probe(
-    handle: Callable[[Any, Budget], Answer],
-    instants: Callable[[Any, Budget], Any],
-    most: int,
-    question: Any,
-    budget: Budget,
-) -> PlanningProbe:
-    """Answer a question about a scene, by `handle`, at few of its `instants` up to the end of the motion."""
-    if question.times is None:
-        return PlanningProbe(handle(question, budget))
-    times = instants(question.times, budget)
-    first, last = times.min(), times.max()
-    ends = question.model_copy(update={"times": [first, last]})
-    if question.outputs is not None and "trajectory" not in question.outputs:
-        return PlanningProbe(handle(ends, budget))
-    found = handle(ends.model_copy(update={"outputs": ["events", "ended"]}), budget)
-    end = last if found["ended"] == HORIZON else type(last)(found["events"][-1]["time"] or 0)
-    existing = times[times <= end]
-    few = list(dict.fromkeys([*existing[few_of(existing.size, most)], first, last]))
-    growth = {"trajectory": existing.size / max(1, sum(time <= end for time in few))}
-    return PlanningProbe(handle(question.model_copy(update={"times": few}), budget), growth)
-
-
-def _probe(scene: type[NamedScene], question: Any, budget: Budget) -> PlanningProbe:
-    """Answer a question about a scene in doubles at few of its times; a method in few steps, whose rows are as long."""
-    own = scene_probe(answering(scene), sample_times, FEW, question.model_copy(update={"method": None}), budget)
-    if in_closed_form(question.method) or "trajectory" not in own.fields:
-        return own
-    instants = sample_times(question.times, budget)
-    ComparableEquation.of(_system(scene, question).motion_to(max(0.0, float(instants.max()))))
-    times = own.fields["trajectory"]["time"]
-    if not len(times):
-        return own
-    near = in_few_steps(question.method, times, QUICK).tolist()
-    found = answering(scene)(question.model_copy(update={"times": near}), budget)
-    # The error of a method is only known by running it.
-    fields = {name: value for name, value in own.fields.items() if name != "accuracy"}
-    fields |= {name: found[name] for name in ("method", "work")}
-    return PlanningProbe(fields | {"trajectory": found["trajectory"] | {"time": times}}, own.growth)
-
-
 def price_of(scene: type[NamedScene]) -> CalibratedCost:
     """Return the price of questions about a scene; as long as it is not measured, that of the costliest that is."""
     operation, measured = operation_of(scene), calibration().seconds
@@ -288,7 +245,6 @@ def _route(scene: type[NamedScene]) -> PostRoute:
         answering(scene),
         price_of(scene),
         lambda question: question.times is None or (few_times(question.times) and in_closed_form(question.method)),
-        partial(_probe, scene),
         examples={name: Example(one.summary, one.question) for name, one in scene.examples.items()},
         warming=scene.warming,
         representations={SVG: scene_drawing(answer)},

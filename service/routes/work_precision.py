@@ -19,7 +19,7 @@ from core.rotation.torque_free import TorqueFree
 from core.scenes import Scene as NamedScene
 from core.scenes.sampled_motion import ComparableEquation
 from core.systems.budget import Budget
-from core.systems.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Method, Radau
+from core.systems.methods import DormandPrince853, Lsoda, Method, Radau
 from core.systems.system import InitialValueProblem
 from core.work_precision import (
     DEFAULT_RUNS,
@@ -27,7 +27,6 @@ from core.work_precision import (
     STEPS_PER_OWN_TIME,
     TOLERANCES,
     Measurement,
-    check_distinct,
     work_precision,
 )
 from service.execution.cost_model import (
@@ -37,15 +36,14 @@ from service.execution.cost_model import (
     ends_of,
     evaluations,
     extent,
-    extreme,
     speed_of,
 )
 from service.requests.described_scene import SceneDescription
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.described_scenes import NEAR, QUICK
+from service.routes.described_scenes import QUICK
 from service.routes.rotation.trajectory import TIMES
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     Envelope,
     Ratio,
@@ -250,19 +248,6 @@ def _long_ladder(radians: float, share: int, repeats: int) -> dict[str, float]:
     return counts
 
 
-def work_precision_probe(question: WorkPrecisionRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question about the closed form at the farthest time alone; about a scene, by few steps."""
-    if question.methods is not None:
-        check_distinct(question.methods)
-    if question.scene is not None or question.named_scene is not None:
-        changes = {"times": [NEAR], "methods": [DormandPrince853(1e-6)], "repeats": 0}
-        near = answer_work_precision(question.model_copy(update=changes), budget)
-        return PlanningProbe(near, {"curves": float(_runs(question))})
-    changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
-    growth = {"curves": float(_runs(question))}
-    return PlanningProbe(answer_work_precision(question.model_copy(update=changes), budget), growth)
-
-
 def drawn(answer: Answer) -> bytes:
     """Return the answer as a figure: error over evaluations, the closed form as a line, the front under the curves."""
     curves = [Curve("", _points(answer["pareto_front"]), emphasised=True)]
@@ -292,7 +277,6 @@ WORK_PRECISION = (
         WorkPrecisionAnswer,
         answer_work_precision,
         CalibratedCost("work_precision", work_precision_counts),
-        planning_probe=work_precision_probe,
         description="`Accept: image/svg+xml` returns the same as a figure.",
         representations={SVG: drawn},
     ),

@@ -250,8 +250,6 @@ def test_long_work_shows_progress_and_can_be_cancelled(opened):
     progress = page.locator("#progress")
     progress.wait_for(state="visible", timeout=10_000)
     assert "computing" in progress.inner_text()
-    # The service's plan says how long it will take.
-    progress.filter(has_text="of about 1 s").wait_for()
     progress.locator("button").click()
     progress.wait_for(state="hidden")
     assert "Cancelled" in page.locator("#problem").inner_text()

@@ -10,7 +10,7 @@ REFUSED = ("422",)
 def test_a_map_has_the_numbers_of_the_api(opened, base):
     page = opened("/studies")
     page.locator("#price").click()
-    page.locator("#told", has_text="s of one processor").wait_for()
+    page.locator("#told", has_text="members").wait_for()
     page.locator("#start").click()
     row = page.locator("#list li")
     row.get_by_text("successful").wait_for(timeout=120_000)

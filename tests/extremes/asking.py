@@ -50,13 +50,19 @@ class Reply:
         return self.answer
 
 
-def ask(path: str, question: Asked) -> Reply:
-    """Read, price, answer and write a question, as the service does; nothing but a refusal may come in between."""
+def ask(path: str, question: Asked, attempt: int = 0) -> Reply:
+    """Read, price, answer and write a question, as the service does; nothing but a refusal may come in between.
+
+    Parameters
+    ----------
+    attempt : int
+        As in `RequestHandler.answer`.
+    """
     route = ROUTES[path]
     try:
         read = ANSWERING.read(route, json.dumps(question).encode())
         assert ANSWERING.price(route, read) >= 0.0
-        answer = ANSWERING.answer(route, read)
+        answer = ANSWERING.answer(route, read, attempt)
     except Refusal as refusal:
         return Reply(None, refusal.problem)
     except MechanicsError as error:

@@ -77,7 +77,7 @@ async def test_it_is_planned_rounded_archived_and_drawn(service: Service) -> Non
         figure = await client.post(PATH, json=QUESTION, headers={"accept": "image/svg+xml"})
         wrong = await client.post(PATH, json=QUESTION | {"mass": -1.0})
     assert plan["cost"]["samples"] == 7
-    assert plan["cost"]["milliseconds"] > 0
+    assert plan["duration"] == "immediate"
     assert short["trajectory"]["position"][1] == pytest.approx(0.1 * np.cos(1.0), abs=5e-5)
     assert len(repr(short["trajectory"]["position"][1])) <= 7
     assert short["accuracy"]["error"] >= 5e-3
@@ -94,8 +94,6 @@ async def test_it_is_run_by_a_method_and_planned(service: Service) -> None:
     async with client_of(service) as client:
         answer = (await client.post(PATH, json=question)).json()
         plan = (await client.post("/v1/plan", json={"path": PATH, "request": question})).json()
-        chosen = question | {"method": {"kind": "dormand-prince-853", "tolerance": 1e-6}}
-        unforeseen = (await client.post("/v1/plan", json={"path": PATH, "request": chosen})).json()
     assert answer["method"] == plan["method"]["kind"] == "symmetric-splitting"
     assert answer["work"]["evaluations"] == plan["cost"]["evaluations"] == 900
     assert answer["accuracy"]["how"] == "measured against closed form"
@@ -103,9 +101,6 @@ async def test_it_is_run_by_a_method_and_planned(service: Service) -> None:
     # Of x'' = -4 x the flow of second order turns by 2 asin(h) a step in place of 2 h: h^2/6 of the angle too far.
     late = 0.1 * np.sin(6.0) * 6.0 * 0.01**2 / 6.0
     assert answer["trajectory"]["position"][-1] - 0.1 * np.cos(6.0) == pytest.approx(-late, rel=1e-2)
-    assert plan["accuracy"] is None, "the error of a method is only known by running it"
-    assert unforeseen["answerable"]
-    assert unforeseen["cost"]["evaluations"] is None
     small = ROUTES[PATH].small
     assert small(read(ROUTES[PATH], QUESTION))
     assert not small(read(ROUTES[PATH], question))

@@ -122,8 +122,23 @@ TOY = PostRoute(
 )
 
 
+def in_short(question: Ask, budget: Budget) -> dict[str, Any]:
+    """Answer one time alone, at length if the behaviour is to sleep for a minute."""
+    seconds = question.angular_velocity[0]
+    return handle(
+        question.model_copy(update={"times": [0.0], "behaviour": "sleep" if seconds == 60.0 else "well"}), budget
+    )
+
+
+def at_rest(question: Ask, budget: Budget) -> dict[str, Any]:
+    return handle(question.model_copy(update={"times": [0.0, 0.0], "behaviour": "well"}), budget)
+
+
+SHORT = replace(TOY, path="/v1/short", operation_id="ask_short", in_short=(in_short, at_rest))
+
+
 def table() -> tuple[PostRoute, ...]:
-    return (TOY,)
+    return (TOY, SHORT)
 
 
 def inline_table() -> tuple[PostRoute, ...]:

@@ -35,7 +35,7 @@ class Settings:
         How long to wait, in all, until a busy service may be sent a request again (s).
     progress : callable, optional
         Called with a `Progress` every quarter of a second while a request takes longer than a second, from another
-        thread. `polhode_client.bar` shows a bar on standard error. Each request is then planned first.
+        thread. `polhode_client.bar` shows a bar on standard error.
     """
 
     def __init__(
@@ -105,14 +105,12 @@ class Client(Settings, Operations):
         return found
 
     def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
-        steps = exchange(
-            OPERATIONS[name].at(**places), question, media, self.patience, planned=self.progress is not None
-        )
+        steps = exchange(OPERATIONS[name].at(**places), question, media, self.patience)
         step = next(steps)
         while True:
             received = None
             if isinstance(step, Sent):
-                with Reporting(self.progress, step.path, step.expected):
+                with Reporting(self.progress, step.path):
                     received = self._received(step)
             else:
                 time.sleep(step)
@@ -164,14 +162,12 @@ class AsyncClient(Settings, AsyncOperations):
         await self._http.aclose()
 
     async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
-        steps = exchange(
-            OPERATIONS[name].at(**places), question, media, self.patience, planned=self.progress is not None
-        )
+        steps = exchange(OPERATIONS[name].at(**places), question, media, self.patience)
         step = next(steps)
         while True:
             received = None
             if isinstance(step, Sent):
-                with Reporting(self.progress, step.path, step.expected):
+                with Reporting(self.progress, step.path):
                     received = await self._received(step)
             else:
                 await anyio.sleep(step)

@@ -2352,7 +2352,9 @@ class PlanAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     path: str
-    answerable: bool
+    answerable: bool | None
+    duration: Literal["immediate", "seconds", "minutes", "beyond the limit"] | None
+    why: str | None
     model: PlannedModel | None
     method: (
         ClosedFormEvaluation
@@ -2387,14 +2389,12 @@ class PlannedModel(TypedDict):
 
 
 class PlannedCost(TypedDict):
-    """What an answer would cost. Counts and bytes hold on every machine, milliseconds on the calibrated one, idle.
-
-    Waiting for a turn is not foreseen, nor the time that the answer travels."""
+    """What an answer costs, where that is counted exactly: it holds on every machine."""
 
     evaluations: int | None
     samples: int | None
-    bytes: int
-    milliseconds: float
+    members: NotRequired[int | None]
+    bytes: int | None
 
 
 class PlannedError(TypedDict):

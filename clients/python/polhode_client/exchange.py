@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -14,7 +13,6 @@ from polhode_client.operations import Operation
 from polhode_client.refused import Refused
 
 BUSY = (429, 503)
-PLAN = "/v1/plan"
 
 
 @dataclass(frozen=True)
@@ -25,8 +23,6 @@ class Sent:
     path: str
     headers: Mapping[str, str]
     body: bytes | None
-    expected: float | None = None
-    """Predicted time of the answer (s), if it was planned."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +43,6 @@ def exchange(
     question: Mapping[str, Any] | None,
     media: str | None,
     patience: float,
-    *,
-    planned: bool = False,
 ) -> Generator[Step, Received | None, Any]:
     """Yield what is to be done, and return the answer.
 
@@ -58,8 +52,6 @@ def exchange(
         Media type of a text; None for a document.
     patience : float
         Longest sum of the waits before a request is sent again (s).
-    planned : bool
-        Whether to have the question planned first, if it is sent as JSON.
 
     Raises
     ------
@@ -71,13 +63,8 @@ def exchange(
     body = None
     if question is not None:
         body, headers["content-type"] = body_of(question)
-    expected = None
-    if planned and body is not None and headers["content-type"] != ARCHIVE and operation.path != PLAN:
-        plan = b'{"path": "%s", "request": %s}' % (operation.path.encode(), body)
-        received = yield Sent("POST", PLAN, {"content-type": "application/json"}, plan)
-        expected = _expected(received)
     while True:
-        received = yield Sent(operation.method, operation.path, headers, body, expected)
+        received = yield Sent(operation.method, operation.path, headers, body)
         assert received is not None
         if received.status < 400:
             kind = received.headers.get("content-type", "").partition(";")[0]
@@ -87,14 +74,6 @@ def exchange(
             raise Refused.read(received.status, received.body, wait)
         patience -= max(wait, 0.01)
         yield wait
-
-
-def _expected(received: Received | None) -> float | None:
-    """Return the predicted time of a plan (s), None if there is none."""
-    if received is None or received.status != 200:
-        return None
-    cost = json.loads(received.body)["cost"]
-    return None if cost is None else float(cost["milliseconds"]) / 1000.0
 
 
 def _seconds(header: str | None) -> float | None:

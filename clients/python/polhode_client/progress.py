@@ -1,4 +1,4 @@
-"""How far a request is: its elapsed time beside the time that the service predicted for it."""
+"""For how long a request has been under way."""
 
 from __future__ import annotations
 
@@ -13,9 +13,6 @@ from typing import Self
 FIRST, EVERY = 1.0, 0.25
 """Time before the first report, and between two (s)."""
 
-WIDTH = 30
-"""Characters of the bar."""
-
 
 @dataclass(frozen=True)
 class Progress:
@@ -27,28 +24,19 @@ class Progress:
         Of the endpoint.
     elapsed : float
         Since the request was sent (s).
-    expected : float or None
-        Predicted by ``POST /v1/plan`` (s), without the time in the queue; None for what is not planned.
     done : bool
         Whether this is the last report: the request is answered, refused or given up.
     """
 
     path: str
     elapsed: float
-    expected: float | None
     done: bool = False
 
 
 def bar(progress: Progress) -> None:
-    """Write a line with a bar to standard error, and clear it at the end."""
+    """Write a line to standard error, and clear it at the end."""
     if progress.done:
         sys.stderr.write("\r\033[K")
-    elif progress.expected:
-        share = min(1.0, progress.elapsed / progress.expected)
-        filled = "#" * round(WIDTH * share)
-        sys.stderr.write(
-            f"\r{progress.path} [{filled:{WIDTH}}] {progress.elapsed:.0f} s of about {progress.expected:.0f} s"
-        )
     else:
         sys.stderr.write(f"\r{progress.path} {progress.elapsed:.0f} s")
     sys.stderr.flush()
@@ -62,12 +50,10 @@ class Reporting:
     report : callable or None
         Called with a `Progress`; None reports nothing.
     path : str
-    expected : float or None
-        As in `Progress`.
     """
 
-    def __init__(self, report: Callable[[Progress], object] | None, path: str, expected: float | None) -> None:
-        self._report, self._path, self._expected = report, path, expected
+    def __init__(self, report: Callable[[Progress], object] | None, path: str) -> None:
+        self._report, self._path = report, path
         self._start, self._ended = time.monotonic(), Event()
         self._thread = Thread(target=self._run, daemon=True)
 
@@ -88,7 +74,7 @@ class Reporting:
         if self._ended.wait(FIRST):
             return
         while True:
-            self._report(Progress(self._path, time.monotonic() - self._start, self._expected))
+            self._report(Progress(self._path, time.monotonic() - self._start))
             if self._ended.wait(EVERY):
                 break
-        self._report(Progress(self._path, time.monotonic() - self._start, self._expected, done=True))
+        self._report(Progress(self._path, time.monotonic() - self._start, done=True))

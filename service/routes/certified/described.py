@@ -8,7 +8,7 @@ from pydantic import Field
 
 from core.digits.adaptive_precision import check_digits
 from core.digits.exact_inputs import nearest
-from core.multibody.proven.proven_answer import PROVEN_OUTPUTS, check_instants, proven_answer
+from core.multibody.proven.proven_answer import PROVEN_OUTPUTS, proven_answer
 from core.systems.budget import Budget
 from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants
 from service.requests.described_scene import SceneDescription
@@ -18,8 +18,7 @@ from service.routes.certified.cost import SET_UP
 from service.routes.described_answer import AtStart, OwnUnit
 from service.routes.described_scenes import DESCRIBED_SCENES, in_space, model_fields, turning_bodies
 from service.routes.motion_figures import draw_described
-from service.routes.planning_probes import FEW_CERTIFIED, few_of
-from service.routing import Answer, PlanningProbe
+from service.routing import Answer
 from service.schemas import DecimalString, Seconds, View, fields_of, sample_count
 
 NUMBERS_OF_A_BODY = 8
@@ -28,8 +27,6 @@ PER_SECOND = 0.7
 """Time to prove a second of the motion of a pendulum to 28 digits (s)."""
 TURNING_IN_SPACE = 3
 """As how many more bodies one counts that turns in space, as measured on tops and thrown bodies."""
-NEAR = 1e-4
-"""How far (s) a motion is followed when it is planned: one step, most often."""
 LONGEST = 20.0
 """Time after which the steps that core allows are used up, about (s)."""
 
@@ -127,19 +124,6 @@ def certified_scene_cost(question: CertifiedSceneRequest, budget: Budget) -> flo
     return set_up + min(LONGEST, moving) + 1e-4 * samples * bodies
 
 
-def certified_scene_probe(question: CertifiedSceneRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question at few times near the start, where the rows are as long."""
-    if question.times is None:
-        return PlanningProbe(answer_certified_scene(question, budget))
-    times = instants(question.times)
-    check_instants(times)
-    few = [float(times[k]) for k in few_of(len(times), FEW_CERTIFIED)]
-    reach = max(map(abs, few))
-    near = [time * min(1.0, NEAR / reach) for time in few] if reach else few
-    fields = answer_certified_scene(question.model_copy(update={"times": near}), budget)
-    return PlanningProbe(fields, {"trajectory": len(times) / len(few)})
-
-
 CERTIFIED_DESCRIBED = certified_route(
     DESCRIBED_SCENES[0],
     question=CertifiedSceneRequest,
@@ -148,6 +132,5 @@ CERTIFIED_DESCRIBED = certified_route(
     description="Numbers of the description are the decimals that are written, unless `numbers` says otherwise; JSON "
     "numbers among the times are doubles, and decimal strings mean what they say.",
     price=certified_scene_cost,
-    planning_probe=certified_scene_probe,
     representations={SVG: draw_described},
 )

@@ -24,7 +24,6 @@ from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable, summing
 from service.routes.motion_figures import draw_rotation
-from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routes.rotation.precession import DISTURBANCE, PRECESSION, RATE, Equilibria, PrecessionFigures
 from service.routes.rotation.trajectory import (
     ANGULAR_VELOCITY,
@@ -34,7 +33,7 @@ from service.routes.rotation.trajectory import (
     TIMES,
     RotationSamples,
 )
-from service.routing import Answer, PlanningProbe
+from service.routing import Answer
 from service.schemas import DecimalString, Request, fields_of
 
 RATES = PerSample(2e-5, 6e-8, 1.7e-10)
@@ -150,14 +149,6 @@ def trajectory_cost(question: CertifiedTrajectoryRequest, budget: Budget) -> flo
     return SET_UP + summing(question.body) + samples * each
 
 
-def trajectory_probe(question: CertifiedTrajectoryRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question at few times, the farthest among them."""
-    times = instants(question.times)
-    few = [*(times[k] for k in few_of(len(times), FEW_CERTIFIED)), max(times, key=abs)]
-    growth = dict.fromkeys(("time", "angular_velocity", "attitude"), len(times) / len(few))
-    return PlanningProbe(answer_trajectory(question.model_copy(update={"times": few}), budget), growth)
-
-
 def precession_cost(question: CertifiedPrecessionRequest, budget: Budget) -> float:
     """Return the same of a question without times: a handful of figures that cost a few samples each."""
     return SET_UP + summing(question.body) + FIGURES.seconds(question.digits)
@@ -175,7 +166,6 @@ CERTIFIED_ROTATION = (
         answer=CertifiedTrajectoryAnswer,
         handle=answer_trajectory,
         price=trajectory_cost,
-        planning_probe=trajectory_probe,
         representations={SVG: draw_rotation},
     ),
     certified_route(

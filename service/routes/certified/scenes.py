@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,14 +24,12 @@ from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable
 from service.routes.motion_figures import scene_drawing
-from service.routes.planning_probes import FEW_CERTIFIED
 from service.routes.scenes import (
     TIMES,
     SceneAnswer,
     answer_model,
     answer_of,
     request_model,
-    scene_probe,
     scene_routes,
 )
 from service.routing import Answer, Example, PostRoute
@@ -107,7 +105,6 @@ def _route(ordinary: PostRoute, scene: type[NamedScene]) -> PostRoute:
         answer=answer,
         handle=answering(scene),
         price=cost,
-        planning_probe=partial(scene_probe, answering(scene), _instants, FEW_CERTIFIED),
         examples={
             "digits": Example(f"{SHOWN_DIGITS} proven digits", in_decimals(shown.question) | {"digits": SHOWN_DIGITS})
         },

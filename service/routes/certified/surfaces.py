@@ -26,9 +26,8 @@ from service.routes.rotation.surfaces import (
     EllipsoidSurface,
     curve_points,
     curves_drawn,
-    probe_of_curves,
 )
-from service.routing import Answer, PlanningProbe
+from service.routing import Answer
 from service.schemas import DecimalString, Request, fields_of, require_one
 
 
@@ -140,20 +139,11 @@ def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> float
     )
 
 
-def ellipsoid_probe(question: CertifiedEllipsoidRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
-    layout, resolution = _surface(question)
-    few = {} if layout is None or resolution > 200 else {"resolution": min(resolution, 4)}
-    whole = question if layout is None else question.model_copy(update={"resolution": resolution})
-    return probe_of_curves(energy_ellipsoid, whole, few, 16, budget)
-
-
 CERTIFIED_ELLIPSOID = certified_route(
     SURFACES[0],
     question=CertifiedEllipsoidRequest,
     answer=CertifiedEllipsoidAnswer,
     handle=energy_ellipsoid,
     price=ellipsoid_cost,
-    planning_probe=ellipsoid_probe,
     representations={SVG: ellipsoid_figure},
 )

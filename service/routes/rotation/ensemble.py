@@ -19,14 +19,13 @@ from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, effort, judged, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, in_closed_form, judged, numbers, speed_of
 from service.responses.svg import SVG
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
 from service.routes.motion_figures import draw_ensemble
-from service.routes.planning_probes import few_of, in_closed_form, probe_in_samples
 from service.routes.rotation.surfaces import Count, Seed
 from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy, accuracy_fields
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
     AngularVelocityRow,
@@ -44,9 +43,6 @@ from service.schemas import (
 
 FEW_MEMBERS = 8
 """Members of an ensemble up to which it may be begun in the event loop."""
-
-PROBED = 8
-"""Members of an ensemble by which all of it is planned."""
 
 
 class Sample(Request):
@@ -170,19 +166,6 @@ def is_small_ensemble(question: EnsembleRequest) -> bool:
     return few and in_closed_form(question.method) and is_small(question)
 
 
-def ensemble_probe(question: EnsembleRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question about a few members at few times."""
-    changes: dict[str, Any] = {}
-    if question.angular_velocities:
-        which = few_of(len(question.angular_velocities), PROBED)
-        changes["angular_velocities"] = [question.angular_velocities[k] for k in which]
-    if question.sample is not None:
-        changes["sample"] = question.sample.model_copy(update={"count": min(PROBED, question.sample.count)})
-    fewer = question.model_copy(update=changes)
-    members = _members(question) / max(1, _members(fewer))
-    return probe_in_samples(answer_ensemble, fewer, _speed(question), budget, members)
-
-
 ENSEMBLE = (
     PostRoute(
         "/v1/rotation/ensemble",
@@ -194,7 +177,6 @@ ENSEMBLE = (
         answer_ensemble,
         CalibratedCost("rotation_ensemble", ensemble_counts),
         is_small_ensemble,
-        ensemble_probe,
         representations={SVG: draw_ensemble},
     ),
 )

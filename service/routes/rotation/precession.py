@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated, Any, Generic, Literal
 
 import numpy as np
@@ -16,12 +15,11 @@ from core.rotation.precession.precession import Precession, Regime, precession
 from core.rotation.stability.stability import stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
-from core.systems.methods import ClosedFormEvaluation
 from service.execution.cost_model import CalibratedCost, effort, judged, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
 from service.routes.rotation.many_precessions import many_precessions
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     Envelope,
     N,
@@ -34,9 +32,6 @@ from service.schemas import (
     UnitVector,
     View,
 )
-
-COARSE = 1000
-"""Samples by which a measurement of more of them is foreseen."""
 
 
 class PrecessionRequest(Request):
@@ -166,14 +161,6 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     return found | judged(measure.method, times, speed, budget)
 
 
-def precession_probe(question: PrecessionRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question with a measurement of the closed form on a grid that is not fine."""
-    measure = question.measure
-    if measure is not None:
-        measure = replace(measure, method=ClosedFormEvaluation(), samples=min(measure.samples, COARSE))
-    return PlanningProbe(answer_precession(question.model_copy(update={"measure": measure}), budget))
-
-
 PRECESSION = (
     PostRoute(
         "/v1/rotation/precession",
@@ -185,7 +172,6 @@ PRECESSION = (
         answer_precession,
         CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
-        precession_probe,
         many=many_precessions,
     ),
     PostRoute(

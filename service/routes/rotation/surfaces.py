@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Any, Generic, Literal
 
 import numpy as np
@@ -22,8 +21,7 @@ from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.bodies import FEW_SAMPLES, counts, is_small, properties_of
-from service.routes.planning_probes import FEW
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     AngularMomentumMagnitude,
     AngularVelocityRow,
@@ -214,31 +212,6 @@ def is_small_ellipsoid(question: EllipsoidRequest) -> bool:
     return question.resolution <= COARSE and curves * question.points <= FEW_POINTS and is_small(question)
 
 
-def ellipsoid_probe(question: EllipsoidRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
-    coarse = min(question.resolution, {"triangles": 8, "grid": 16}[question.layout])
-    changes = {"resolution": coarse} if question.resolution <= FINEST_PRICED else {}
-    return probe_of_curves(energy_ellipsoid, question, changes, FEW, budget)
-
-
-def probe_of_curves(
-    handle: Callable[[Any, Budget], Answer], question: Any, changes: dict[str, Any], points: int, budget: Budget
-) -> PlanningProbe:
-    """Answer, by `handle`, a question about a surface with changes and with few curves of few points."""
-    changes["points"] = min(question.points, points)
-    if question.polhodes is not None:
-        changes["polhodes"] = question.polhodes.model_copy(update={"count": min(question.polhodes.count, 4)})
-    few = question.model_copy(update=changes)
-    fields = handle(few, budget)
-    surface = (question.resolution / few.resolution) ** 2 if few.resolution else 1.0
-    length = (question.points + 1) / (few.points + 1)
-    polhodes = question.polhodes.count / few.polhodes.count if few.polhodes is not None else 1.0
-    # That of a steady rotation is a single point.
-    if any(curve["closed"] for curve in fields.get("polhodes", ())):
-        polhodes *= length
-    return PlanningProbe(fields, {"mesh": surface, "grid": surface, "polhodes": polhodes, "separatrix": length})
-
-
 def states(question: StatesRequest, budget: Budget) -> Answer:
     """Answer with starts of one energy."""
     body = properties_of(question.body)
@@ -248,13 +221,6 @@ def states(question: StatesRequest, budget: Budget) -> Answer:
         "seed": question.seed,
         "warnings": tuple(notice.inside("body") for notice in body.warnings),
     }
-
-
-def states_probe(question: StatesRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question about few starts."""
-    few = min(question.count, FEW)
-    growth = {"angular_velocities": question.count / few}
-    return PlanningProbe(states(question.model_copy(update={"count": few}), budget), growth)
 
 
 def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
@@ -273,7 +239,6 @@ SURFACES = (
         energy_ellipsoid,
         CalibratedCost("energy_ellipsoid", ellipsoid_counts),
         is_small_ellipsoid,
-        ellipsoid_probe,
         description="`Accept: image/svg+xml` returns the same as a figure, without the mesh.",
         representations={SVG: ellipsoid_figure},
     ),
@@ -287,6 +252,5 @@ SURFACES = (
         states,
         CalibratedCost("initial_states", states_counts),
         lambda question: question.count <= FEW_SAMPLES and is_small(question),
-        states_probe,
     ),
 )

@@ -14,11 +14,10 @@ from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Accuracy as StatedAccuracy
 from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, effort, judged, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, in_closed_form, judged, numbers, speed_of
 from service.responses.svg import SVG
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
 from service.routes.motion_figures import draw_rotation
-from service.routes.planning_probes import in_closed_form, probe_in_samples
 from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
@@ -256,7 +255,6 @@ ROTATION = (
         trajectory,
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
-        lambda question, budget: probe_in_samples(trajectory, question, _speed(question), budget),
         warming=(RESTING, STEADY, NEARLY_SYMMETRIC),
         representations={SVG: draw_rotation},
     ),

@@ -23,8 +23,8 @@ from service.problems import Refusal
 from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, within_question
 from service.routes.declared_units import unit_at
 from service.routes.studies.members import Members, number_of
-from service.routes.studies.views import STATE, StudyState
-from service.routing import Answer, PlanningProbe, PostRoute, StudyRoute
+from service.routes.studies.views import StudyState
+from service.routing import Answer, PostRoute, StudyRoute
 from service.schemas import Request
 
 PATH = "/v1/studies"
@@ -91,8 +91,7 @@ class StudyRequest(Request):
 
 DESCRIPTION = """Answered with 202 and the state of the study; its address is in the Location header. Members that are
 refused are part of the results, with the code of their problem. Results are a function of the request alone: the
-same bits whatever the number of processes, and after any interruption. `/v1/plan` tells members and price without
-running the question."""
+same bits whatever the number of processes, and after any interruption. `/v1/plan` tells the number of members."""
 
 
 A_FIGURE = "lead to a number, true or false in the answer"
@@ -107,12 +106,9 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         return _answerable(question, table, budget)
 
     def price(question: StudyRequest, budget: Budget) -> float:
+        _require_members(question, budget)
+        _places(question, table.route(question.question))
         return table.price(question.question, budget) + PRICED * SECONDS_OF_A_MEMBER
-
-    def probe(question: StudyRequest, budget: Budget) -> PlanningProbe:
-        # The question itself is not run for it; what the answer has beside the plan is added.
-        found = _planned(question, table, budget)
-        return PlanningProbe({**STATE, **found}, seconds=found["seconds"])
 
     def members(question: StudyRequest, budget: Budget) -> Members:
         return Members(question, table.source(question.question, budget))
@@ -126,7 +122,6 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         StudyState,
         plan,
         price,
-        planning_probe=probe,
         description=DESCRIPTION,
         members=members,
     )
@@ -139,7 +134,7 @@ def _answerable(question: StudyRequest, table: QuestionTable, budget: Budget) ->
     with within_question():
         answer = source.answer(json.dumps(question.question.request))
     found = _planned(question, table, budget)
-    for k, figure in enumerate(_paths(question)[1]):
+    for k, figure in enumerate(_places(question, table.route(question.question))[1]):
         value = value_at(answer, figure)
         if number_of(value) is None and not is_null(answer, figure):
             raise InvalidParameter(("quantities", k), A_FIGURE)
@@ -159,10 +154,7 @@ def _require_members(question: StudyRequest, budget: Budget) -> Design:
 def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> Answer:
     """Return members, inputs, figures, time and size of a study without answering its question, or refuse it."""
     route, design = table.route(question.question), _require_members(question, budget)
-    inputs, figures = _paths(question)
-    for k, figure in enumerate(figures):
-        if figure[:1] and figure[0] not in route.answer.model_fields:
-            raise InvalidParameter(("quantities", k), A_FIGURE)
+    inputs, figures = _places(question, route)
     members = Members(question, table.source(question.question, budget))
     together = members.together
     each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
@@ -190,8 +182,8 @@ def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> An
     }
 
 
-def _paths(question: StudyRequest) -> tuple[list[Path], list[Path]]:
-    """Return the places of the varied inputs and of the figures."""
+def _places(question: StudyRequest, route: PostRoute) -> tuple[list[Path], list[Path]]:
+    """Return the places of the varied inputs in the request and of the figures in the answer."""
     taken: set[Path] = set()
     inputs = []
     for k, entry in enumerate(question.vary):
@@ -216,6 +208,8 @@ def _paths(question: StudyRequest) -> tuple[list[Path], list[Path]]:
         path = _steps(pointer, ("quantities", k))
         if path in figures:
             raise InvalidParameter(("quantities", k), "name another figure than those before it")
+        if path[:1] and path[0] not in route.answer.model_fields:
+            raise InvalidParameter(("quantities", k), A_FIGURE)
         figures.append(path)
     return inputs, figures
 

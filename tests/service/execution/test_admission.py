@@ -108,6 +108,15 @@ async def test_a_computation_past_its_deadline_is_stopped() -> None:
         assert (response.status_code, response.json()["code"]) == (503, "deadline-exceeded")
 
 
+async def test_what_uses_its_slice_is_answered_from_less_and_becomes_no_long_question(
+    client: httpx.AsyncClient, service: Service
+) -> None:
+    for question, times in ((sleeping(0.0), 3), (sleeping(30.0), 1), (sleeping(60.0), 2)):
+        answer = (await client.post("/v1/short", json=question)).json()
+        assert len(answer["time"]) == times
+    assert service.compute.processes.long == 0
+
+
 def alive(pid: int) -> bool:
     try:
         os.kill(pid, 0)

@@ -175,7 +175,6 @@ class TestQuestions:
         except (MechanicsError, Refusal):
             assume(False)
         assert 0.0 < seconds < inf
-        assert 0.0 <= error_of(asked.method, asked.times, speed_of(rate)) <= 2.0
 
 
 class TestMethods:
@@ -189,7 +188,6 @@ class TestMethods:
         count = len(times) if isinstance(times, list) else times.count
         more = count * calibration().methods[fine.kind]["evaluations"] if setting(fine)[0] == "step" else 0.0
         assert 0.0 <= evaluations(coarse, times, speed) <= evaluations(fine, times, speed) + more < inf
-        assert 0.0 <= error_of(fine, times, speed) <= error_of(coarse, times, speed) <= 2.0
 
     @given(pairs(), TIMES, SPEED, SPEED)
     @settings(deadline=None, derandomize=True)

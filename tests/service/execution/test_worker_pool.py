@@ -23,7 +23,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, SliceUsed, Stopped, WorkerDied
 from service.execution.process_starter import ProcessStarter
 from service.execution.worker_pool import MOST_LONG_OF_A_CLIENT, Processes
 from service.execution.worker_process import Process
@@ -608,6 +608,17 @@ class TestClasses:
             assert await long.reply == b"a"
             assert begun(place) == [*"a01234"]
             assert (processes.long, processes.waiting, len(moved)) == (0, 0, 1)
+
+    async def test_one_that_is_not_to_become_long_is_ended_with_its_slice(self, place: Path) -> None:
+        async with classes(place) as (processes, moved):
+            for i in range(3):
+                with pytest.raises(SliceUsed):
+                    await processes.submit(
+                        [framed(b"spin %d" % i)], "client", longest=LONG, patience=LONG, may_be_long=False
+                    ).reply
+            assert await ask(processes, b"echo a").reply == b"a"
+            assert (processes.long, len(moved)) == (0, 0)
+            await until(lambda: holds_together(processes))
 
     async def test_what_waits_without_using_its_slice_is_moved_too(self, place: Path) -> None:
         async with classes(place) as (processes, moved):
