@@ -267,7 +267,7 @@ TESTED_IN |= {
         ),
         "reduction/test_passes": "reduction/pinning reduction/reduction",
         "trajectory/test_along": "trajectory/integrals",
-        "trajectory/test_occurrences": "trajectory/search_along trajectory/smooth_search",
+        "trajectory/test_occurrences": "trajectory/search_along",
         "contacts/test_complementarity": (
             "contacts/conditions_of_states contacts/contact_forces contacts/contact_responses contacts/contact_states"
         ),
@@ -275,7 +275,7 @@ TESTED_IN |= {
         "contacts/test_shares_in_space": "phases/shared_friction",
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
-            "phases/crossings phases/phase phases/phases "
+            "phases/phase phases/phases "
             "phases/slow_bounces phases/tracks phases/uniform_pieces phases/watches start "
             "table/contact_places"
         ),
@@ -289,7 +289,7 @@ TESTED_IN |= {
             "search/bands search/batch search/curves search/first_of_motion search/followed search/location "
             "search/pieces search/taylor"
         ),
-        "phases/test_sums_in_phases": "phases/stretches",
+        "phases/test_sums": "phases/stretches",
         "proven/test_proven_answer": "proven/part_proof",
         "parts/test_joined_answer": (
             "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"

@@ -38,6 +38,10 @@ class Expansion:
         """Highest power of the places."""
         return len(self.places[0]) - 1 if self.places else 1
 
+    def state(self, time: Ball) -> tuple[list[Ball], list[Ball]]:
+        """Return coordinates and rates at a time, of a motion that is a polynomial."""
+        return [value(x, time) for x in self.places], [value(slope(x), time) for x in self.places]
+
     def of(self, poly: Poly) -> Series:
         """Return a polynomial of the coordinates as a series."""
         size = self.order + 1

@@ -86,6 +86,11 @@ class Whole:
                     offsets[i] = pair(value, 0)
         return slopes, offsets
 
+    @property
+    def uniform(self) -> bool:
+        """Whether every acceleration is constant."""
+        return all(motion.uniform for _, motion in self.parts)
+
     @cached_property
     def arrays(self) -> tuple[Packed, Units, list[int]]:
         """The table as described for compiled code, its units, and the rows that it holds."""

@@ -18,11 +18,9 @@ from core.multibody.phases.method_samples import integrated, measured
 from core.multibody.phases.phase import PhaseMotion
 from core.multibody.phases.phase_columns import ColumnsInPhases
 from core.multibody.phases.phase_states import how_until
-from core.multibody.phases.searches_in_phases import SearchInPhases
+from core.multibody.phases.searches import Searches
 from core.multibody.phases.smooth_motion import not_watched
-from core.multibody.phases.stretches import stretches
-from core.multibody.phases.sums_in_phases import SumsInPhases
-from core.multibody.trajectory.along import Along
+from core.multibody.phases.sums import Sums
 from core.multibody.trajectory.column_errors import FINEST, require_reached, scaled, worst
 from core.multibody.trajectory.columns import NEAREST, Columns
 from core.multibody.trajectory.events import searched_until
@@ -36,7 +34,6 @@ from core.multibody.trajectory.inherited import (
 )
 from core.multibody.trajectory.occurrences import ExtremesOf, ValueSearch
 from core.multibody.trajectory.scene_request import Output, require_affordable
-from core.multibody.trajectory.smooth_search import SmoothSearch
 from core.notices import Notice
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
@@ -64,11 +61,6 @@ class DescribedSystem:
     def __init__(self, scene: Scene, motion: PhaseMotion, outputs: Sequence[Output]) -> None:
         self.scene, self.motion, self.outputs = scene, motion, outputs
         self.columns = ColumnsInPhases(motion, outputs)
-
-    @property
-    def _numerical(self) -> bool:
-        """Whether a phase may be computed in pairs of doubles in place of doubles."""
-        return self.motion.smooth and any(part.has_finer_run for _, part in self.motion.phases[0].models[0].whole.parts)
 
     def trajectory(self, question: MotionQuestion) -> Trajectory:
         """Return the samples up to the events that end the motion; see `core.systems.question.System`."""
@@ -136,7 +128,7 @@ class DescribedSystem:
     def _own(self, times: Floats, accuracy: float, how: How) -> dict[str, Column]:
         """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""
         columns = self.columns.with_sizes(times)
-        if worst(columns) > accuracy and self._numerical and accuracy >= FINEST:
+        if worst(columns) > accuracy and self.columns.numerical and accuracy >= FINEST:
             self.columns = replace(self.columns, finer=True)
             columns = self.columns.with_sizes(times)
         if worst(columns) > accuracy and (accuracy < FINEST or self.columns.are_known(times, accuracy)):
@@ -151,12 +143,7 @@ class DescribedSystem:
         """Return the columns of what is summed up along the motion."""
         if not set(SUMS) & set(self.outputs):
             return {}
-        sums: Along | SumsInPhases
-        if self.motion.smooth:
-            sums = Along(self.motion.phases[0].models[0].whole, times, how, finer=self.columns.finer)
-        else:
-            pieces = list(stretches(self.motion, float(np.max(times, initial=0.0))))
-            sums = SumsInPhases(self.motion, pieces, times, how)
+        sums = Sums(self.columns, times, how)
         found = sums.works() if "work-in-time" in self.outputs else {}
         return found | (sums.paths() if "paths-in-time" in self.outputs else {})
 
@@ -174,7 +161,7 @@ class DescribedSystem:
         with inside_field("method"):
             states, work = integrated(whole, times, method, question.budget)
         own = self.columns.of_states(times, states, how)
-        return measured(own, self.columns, times, numerical=self._numerical), work
+        return measured(own, self.columns, times, numerical=self.columns.numerical), work
 
     def _with_inherited(
         self, times: Floats, columns: dict[str, Column], stated: Accuracy, uncertainty: float, end: float
@@ -218,15 +205,9 @@ class DescribedSystem:
         motion = self.motion
         end = searched_until(float(np.max(times)), motion.ended)
         with np.errstate(over="ignore", invalid="ignore"):
-            if motion.smooth:
-                phase, how = motion.phases[0], how_until(motion.phases, end)
-                whole, finer = phase.models[0].whole, self.columns.finer
-                search = SmoothSearch(whole, how, phase.determined, end, accuracy, self._numerical, finer)
-                return search.found(self.outputs)
-            pieces = list(stretches(motion, end))
-            if not pieces:
+            if not motion.phases:
                 return (), ()
-            along = SearchInPhases(pieces, how_until(motion.phases, end))
+            along = Searches(self.columns, end, how_until(motion.phases, end), accuracy)
             found: list[Occurrence] = []
             ranges: list[SceneExtremes] = []
             for index, one in searches:

@@ -13,13 +13,14 @@ from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.contacts.projection import project
 from core.multibody.equations.dynamics import ForceAtStart, Multipliers, forces_at_start, multipliers_at_start
+from core.multibody.equations.expansion import Expansion
 from core.multibody.motion.modelling import Modelled, models_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.accumulation import Accumulation
-from core.multibody.phases.crossings import has_constant_forces, is_uniform
 from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import ENDED, TurningSlip, turning_model
+from core.multibody.phases.uniform_pieces import keeps_its_forces, uniform_motion
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described
 from core.systems.trajectory import MotionEvent
@@ -66,8 +67,21 @@ class Phase:
 
     @cached_property
     def uniform(self) -> bool:
-        """Whether every acceleration is constant, and every force of a contact."""
-        return all(is_uniform(model) for model in self.models) and has_constant_forces(self.tables[0])
+        """Whether every acceleration is constant, and, where a contact is closed, every force."""
+        if not all(model.whole.uniform for model in self.models):
+            return False
+        return all(row is None for row in self.tables[0].normal) or self.constant_forces
+
+    @cached_property
+    def constant_forces(self) -> bool:
+        """Whether the forces of a motion with constant accelerations are constant."""
+        return keeps_its_forces(self.tables[0].table, self.exact_motions[0])
+
+    @cached_property
+    def exact_motions(self) -> list[Expansion]:
+        """The motion on every track from the start of the phase, where accelerations are constant."""
+        tracks = zip(self.tables, self.models, strict=True)
+        return [uniform_motion(table.table, model.whole.acceleration) for table, model in tracks]
 
     @cached_property
     def start_forces(self) -> tuple[Multipliers, list[ForceAtStart]]:

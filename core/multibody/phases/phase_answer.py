@@ -8,7 +8,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from core.errors import InvalidParameter, NotApplicable, SlackAtStart
+from core.errors import NotApplicable, SlackAtStart
 from core.multibody.algebra.doubles import error_in_doubles
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.answer import BodyAcceleration, ForceAnswer, MotionPhase, SceneProblem, SceneSolution
@@ -17,7 +17,7 @@ from core.multibody.language.scene import Scene
 from core.multibody.model_answer import PartErrors, PartModel, SceneModel
 from core.multibody.motion.modelling import modelled
 from core.multibody.phases.before_start import follow_backwards
-from core.multibody.phases.described_system import SUMS, DescribedSystem
+from core.multibody.phases.described_system import DescribedSystem
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phases import motion_in_phases, one_sided
 from core.multibody.phases.smooth_motion import ends_within, smooth_motion
@@ -48,7 +48,7 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
     InvalidParameter
         For a scene that cannot be.
     NotApplicable
-        For methods, equilibria and sums before the start, where something is unilateral.
+        For methods and equilibria where something is unilateral.
     AccuracyUnreachable, BudgetExceeded
         As `core.multibody.solve.solve_scene`.
     """
@@ -139,11 +139,6 @@ def _require_answerable(request: SceneRequest) -> None:
             "equilibria are not answered where something may touch, slide or be slack",
             path=("outputs", list(request.outputs).index("equilibria")),
             remedy='ask between which values of a number it stays at rest: {"thresholds": {"vary", "between"}}',
-        )
-    before = np.flatnonzero(request.times < 0.0)
-    if len(before) and set(SUMS) & set(request.outputs):
-        raise InvalidParameter(
-            ("times", int(before[0])), "be at least 0 where works or paths are summed up through contacts"
         )
 
 

@@ -39,6 +39,12 @@ class ColumnsInPhases:
     finer: bool = False
     rounding: float = FINEST
 
+    @property
+    def numerical(self) -> bool:
+        """Whether a phase may be computed in pairs of doubles in place of doubles."""
+        phases = self.motion.phases
+        return self.motion.smooth and any(part.has_finer_run for _, part in phases[0].models[0].whole.parts)
+
     def at(self, times: Floats) -> dict[str, Column]:
         """Return the columns at some times."""
         phases = self.motion.phases

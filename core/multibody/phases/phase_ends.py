@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from flint import arb
@@ -14,23 +14,22 @@ from core.multibody.algebra.polynomials import Ball
 from core.multibody.contacts.contact_states import State, phase_table
 from core.multibody.contacts.projection import project
 from core.multibody.equations.packed import two_to
-from core.multibody.equations.polynomial_roots import sharpened
+from core.multibody.equations.polynomial_roots import first_negative, sharpened
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
-from core.multibody.phases.crossings import Crossing, first_in_closed_form, state_of, uniform_motion
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.shared_friction import first_without_share
 from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
-from core.multibody.phases.uniform_pieces import ExpandedUniform, along_uniform
-from core.multibody.phases.watches import Watch, lengths, watches
+from core.multibody.phases.uniform_pieces import ExpandedUniform
+from core.multibody.phases.watches import Crossing, Watch, lengths, watches
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located
-from core.multibody.search.pieces import Expanded, repeats_after
+from core.multibody.search.pieces import Expanded, ExpandedWhole, repeats_after
 from core.multibody.table.description import Described
 from core.multibody.table.table import Row
-from core.multibody.trajectory.events import follows
+from core.multibody.trajectory.events import follows, runs_of
 
 
 class SingularPlace(Exception):
@@ -111,13 +110,18 @@ def _crossings(
 
 def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]) -> list[Crossing]:
     """Return the end of a phase whose state is exact and whose accelerations are constant."""
-    first, grazes = first_in_closed_form(uniform_motion(phase.tables[0].table, phase.models[0]), watched, left)
+    motion = phase.exact_motions[0]
+    # No force changes.
+    found = [(w, *first_negative(w.series(motion), left)) for w in watched if w.what not in ("push", "grip")]
+    ends = [(root, watch) for watch, root, _ in found if root is not None]
+    first = min(ends, key=lambda one: one[0].mid(), default=None)
     noticed.extend(
-        f"{w.one.name} touches at rest at {float(phase.start + t):.6g} s, and nothing comes of it"
-        for w, t in grazes
-        if w.what == "gap"
+        f"{watch.one.name} touches at rest at {float(phase.start + time):.6g} s, and nothing comes of it"
+        for watch, _, touched in found
+        for time in touched
+        if watch.what == "gap" and (first is None or time < first[0])
     )
-    return [] if first is None else [first]
+    return [] if first is None else [Crossing(*first, *motion.state(first[0]))]
 
 
 def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
@@ -149,8 +153,7 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
 def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
     """Return the first crossing of a phase on both of its tracks, none where nothing ends it."""
     expansions, period = expansions_of(phase), repeats_after(phase.models[0].whole)
-    along = [partial(along_uniform, watch) if phase.uniform else watch.along for watch in watched]
-    search = FirstOfMotion(expansions, [replace(w.watched, along=a) for w, a in zip(watched, along, strict=True)])
+    search = FirstOfMotion(expansions, [watch.watched for watch in watched])
     last = left if period is None else min(left, period)
     reach, singular = min(last, _first_reach(phase)), None
     while True:
@@ -191,27 +194,33 @@ def _located(phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Fou
         return crossings if len(crossings) > 1 else crossings * 2
     # Bounces in turn grow shorter than pairs resolve: where accelerations are constant, balls know the state.
     crossings = []
-    for table, model in zip(phase.tables, phase.models, strict=True):
-        motion = uniform_motion(table.table, model)
+    for motion in phase.exact_motions:
         time = sharpened(watch.series(motion), arb(found.time) + arb(found.rest))
         if not time.is_finite():
             raise NotLocated
-        crossings.append(Crossing(time, watch, *state_of(motion, time)))
+        crossings.append(Crossing(time, watch, *motion.state(time)))
     return crossings
 
 
-def expansions_of(phase: Phase) -> Expansions:
-    """Return the motion on both tracks, or by both of its runs; only one where it is known in closed form."""
+def expansions_of(phase: Phase, coordinates: Sequence[int] | None = None, *, finer: bool = False) -> Expansions:
+    """Return the motion on both tracks, or by both of its runs; only one where it is known in closed form.
+
+    Parameters
+    ----------
+    coordinates : sequence of int, optional
+        What is of interest: the expansion of places leaves out parts that these do not follow.
+    finer : bool
+        Whether the runs are those in pairs of doubles where there is a choice.
+    """
     first, last = phase.models[0].whole, phase.models[-1].whole
     if phase.turning:
         both = [ExpandedInBalls(first, "fine"), ExpandedInBalls(last, "check")]
         return Expansions(both, both)
     if phase.uniform:
-        tracks = zip(phase.tables, phase.models, strict=True)
-        uniform = [ExpandedUniform(uniform_motion(table.table, model)) for table, model in tracks]
-        return Expansions(uniform, uniform)
-    exact = first is last and all(motion.how == "closed form" for _, motion in first.parts)
-    return Expansions.of([(first, "fine")] if exact else [(first, "fine"), (last, "check")])
+        uniform = [ExpandedUniform(motion) for motion in phase.exact_motions]
+        forces = uniform if phase.constant_forces else [ExpandedWhole(*run) for run in runs_of(first, last)]
+        return Expansions(uniform, forces)
+    return Expansions.of(runs_of(first, last, finer=finer), coordinates)
 
 
 def _first_reach(phase: Phase) -> float:

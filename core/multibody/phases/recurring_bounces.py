@@ -21,7 +21,6 @@ from core.multibody.contacts.contact_responses import (
 from core.multibody.contacts.contact_states import State, grips
 from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.phases.accumulation import Accumulation
-from core.multibody.phases.crossings import is_uniform
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
 from core.multibody.table.connection_effects import Unilateral
@@ -71,7 +70,7 @@ def recurring(
     one = unilateral[i]
     if phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
         return None
-    exact = is_uniform(phase.models[0]) and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
+    exact = phase.models[0].whole.uniform and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
     if exact and not listed:
         return None
     found: list[Accumulation] = []

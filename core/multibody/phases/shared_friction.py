@@ -15,9 +15,8 @@ import numpy as np
 from core.arrays import Floats
 from core.multibody.contacts.admissible_forces import SharedCones, shared_cones
 from core.multibody.contacts.shares_in_space import MARGINAL
-from core.multibody.phases.crossings import Crossing
 from core.multibody.phases.phase import Phase
-from core.multibody.phases.watches import Watch
+from core.multibody.phases.watches import Crossing, Watch
 
 _SAMPLES = 16
 """Times at which a share is looked for, evenly until an event or the end."""

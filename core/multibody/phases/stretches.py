@@ -13,20 +13,20 @@ from flint import arb
 
 from core.arrays import Floats
 from core.errors import BudgetExceeded
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.expansion import Expansion
 from core.multibody.equations.packed import pair
 from core.multibody.motion.numerical import BEFORE_SINGULAR
-from core.multibody.motion.whole import WholeStates
+from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.phases.accumulation import Accumulation
-from core.multibody.phases.crossings import uniform_motion
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_ends import expansions_of
-from core.multibody.phases.phase_states import columns_in, states_in
+from core.multibody.phases.phase_states import Times, columns_in, states_in
 from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.uniform_pieces import ExpandedUniform
 from core.multibody.search.first_of_motion import Expansions
-from core.systems.trajectory import Column, How, MotionEvent
+from core.multibody.trajectory.along import period_within
+from core.systems.trajectory import Column, How
 
 MOST_ARCS = 2000
 """Bounces, of those that accumulate, that are followed one by one."""
@@ -53,8 +53,8 @@ class Stretch:
         Error of the start (s).
     arc : tuple of three lists of ball, or None
         State at the start of an arc, and its constant accelerations.
-    singular : bool
-        Whether it ends at a singular place.
+    finer : bool
+        Whether pairs of doubles compute the motion where there is a choice.
     """
 
     number: int
@@ -63,7 +63,12 @@ class Stretch:
     extent: Ball
     late: float
     arc: tuple[Sequence[Ball], Sequence[Ball], Sequence[Ball]] | None = None
-    singular: bool = False
+    finer: bool = False
+
+    @property
+    def whole(self) -> Whole:
+        """The motion of the scene from its start."""
+        return self.phase.models[0].whole
 
     @property
     def length(self) -> float:
@@ -71,10 +76,10 @@ class Stretch:
         return float(self.extent)
 
     def states(self, times: Floats) -> WholeStates:
-        """Return the states at times since the start of the stretch, shape (t,)."""
-        within = np.clip(times, 0.0, self.length)
+        """Return the states at times since the start of the stretch, shape (t,); those of the first may be negative."""
         if self.arc is None:
-            return states_in(replace(self.phase, bounces=None), [self.start + float(t) for t in within])
+            return states_in(self.phase, self._since_the_start(times), finer=self.finer)
+        within = np.clip(times, 0.0, self.length)
         q, v, a = (np.array([pair(x, 0) for x in vector]) for vector in self.arc)
         gain = a[:, 0]
         gone, won = within[:, None] * (v[:, 0] + 0.5 * within[:, None] * gain), within[:, None] * gain
@@ -84,28 +89,38 @@ class Stretch:
 
     def columns(self, times: Floats, how: How, group: str) -> dict[str, Column]:
         """Return the columns of one output at times since the start of the stretch."""
-        phase = replace(self.phase, bounces=None)
-        return columns_in(phase, [self.start + float(t) for t in times], self.states(times), how, [group])
+        return columns_in(self.phase, self._since_the_start(times), self.states(times), how, [group])
+
+    def _since_the_start(self, times: Floats) -> Times:
+        """Return times since the start of the scene."""
+        within = np.clip(times, 0.0 if self.number else -np.inf, self.length)
+        return within if is_zero(self.start) else [self.start + float(t) for t in within]
+
+    def period(self, parts: Sequence[int], end: float) -> Ball | None:
+        """Return the period (s) after which some parts are the same again, if that is shorter than a time.
+
+        What is known from two tracks has a period of each.
+        """
+        if self.arc is not None or len(self.phase.tracks) > 1:
+            return None
+        return period_within([self.whole.parts[k][1] for k in parts], end)
 
     @property
     def expanded(self) -> float:
-        """Time up to which it can be expanded (s): not to a singular place, nor to where a turning slip ends."""
-        ends = self.singular or (self.phase.turning and self.phase.end is not None)
-        return BEFORE_SINGULAR * self.length if ends else self.length
+        """Time up to which it can be expanded (s): not to where a turning slip ends."""
+        return BEFORE_SINGULAR * self.length if self.phase.turning and self.phase.end is not None else self.length
 
-    @property
-    def expansions(self) -> Expansions:
-        """Computations of the motion from its start."""
+    def expansions(self, coordinates: Sequence[int] | None) -> Expansions:
+        """Return computations of the motion from its start; of places, those that some coordinates follow."""
         if self.arc is None:
-            return expansions_of(self.phase)
+            return expansions_of(self.phase, coordinates, finer=self.finer)
         q, v, a = self.arc
         places = [[x, y, z / 2, ZERO, ZERO] for x, y, z in zip(q, v, a, strict=True)]
-        forces = uniform_motion(self.phase.tables[0].table, self.phase.models[0]).multipliers
-        arc = [ExpandedUniform(Expansion(places, forces))]
+        arc = [ExpandedUniform(Expansion(places, self.phase.exact_motions[0].multipliers))]
         return Expansions(arc, arc)
 
 
-def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:
+def stretches(motion: PhaseMotion, end: float, *, finer: bool) -> Iterator[Stretch]:
     """Yield the stretches of a motion up to a time, in their order."""
     for number, phase in enumerate(motion.phases):
         until = arb(end)
@@ -117,15 +132,9 @@ def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:
         late = float(phase.start.rad())
         late += SAFETY_FACTOR * max((abs(float(one.time - phase.start)) for one in phase.tracks), default=0.0)
         if phase.bounces is None:
-            singular = _is_singular(motion.ended, until)
-            yield Stretch(number, phase, phase.start, until - phase.start, late, singular=singular)
+            yield Stretch(number, phase, phase.start, until - phase.start, late, finer=finer)
         else:
-            yield from _arcs(number, phase, phase.bounces, until, late)
-
-
-def _is_singular(ended: MotionEvent | None, time: Ball) -> bool:
-    """Return whether a time is as good as that of a singular place."""
-    return ended is not None and ended.kind == "singular" and bool(time > arb(ended.time * BEFORE_SINGULAR))
+            yield from _arcs(number, replace(phase, bounces=None), phase.bounces, until, late)
 
 
 def _arcs(number: int, phase: Phase, bounces: Accumulation, until: Ball, late: float) -> Iterator[Stretch]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from core.multibody.algebra.polynomials import ONE
+from core.multibody.algebra.polynomials import ONE, Ball
 from core.multibody.contacts.admissible_forces import AdmissibleForce, admissible
 from core.multibody.contacts.contact_states import PhaseTable, State
 from core.multibody.equations.expansion import Expansion, Series
@@ -82,3 +82,23 @@ def watches(unilateral: Sequence[Unilateral], states: Sequence[State], phase: Ph
 def lengths(limits: Sequence[Limit]) -> list[Watch]:
     """Return the lengths whose zeros end a motion."""
     return [Watch(-1, "length", Unilateral(one.name, one.length)) for one in limits if one.length is not None]
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """The end of a phase.
+
+    Attributes
+    ----------
+    time : ball
+        Since the start of the phase.
+    watch : Watch
+        What changed its sign.
+    q, v : list of ball
+        State there.
+    """
+
+    time: Ball
+    watch: Watch
+    q: list[Ball]
+    v: list[Ball]

@@ -67,7 +67,7 @@ def first_event(whole: Whole, ends: Sequence[End], end: float) -> MotionEvent | 
     if not watched or end == 0.0:
         return ended
     _require_weight(whole, watched)
-    expansions = Expansions.of(runs_of(whole))
+    expansions = Expansions.of(runs_of(whole, whole))
     best: MotionEvent | None = None
     for group, reach in _groups(whole, watched, end):
         quantities = [one.watched for one in group]
@@ -108,13 +108,21 @@ def _singular(whole: Whole, watched: Sequence[End], end: float) -> MotionEvent |
     return found
 
 
-def runs_of(whole: Whole) -> list[tuple[Whole, str]]:
-    """Return the motion by the run that is answered and by one that is more right, or in closed form."""
-    if all(motion.how == "closed form" for _, motion in whole.parts):
-        return [(whole, "fine")]
-    in_pairs = any(motion.lost_to_doubles for _, motion in whole.parts)
+def runs_of(first: Whole, last: Whole, *, finer: bool = False) -> list[tuple[Whole, str]]:
+    """Return a motion by the run that is answered and by one that is more right, or in closed form.
+
+    Parameters
+    ----------
+    first, last : Whole
+        The same twice, or what is known of it from two tracks.
+    finer : bool
+        Whether the runs are those in pairs of doubles where there is a choice.
+    """
+    if first is last and all(motion.how == "closed form" for _, motion in first.parts):
+        return [(first, "fine")]
+    in_pairs = finer or first is not last or any(motion.lost_to_doubles for _, motion in first.parts)
     kinds = ("fine", "check") if in_pairs else ("reference", "doubles")
-    return [(whole, kind) for kind in kinds]
+    return list(zip((first, last), kinds, strict=True))
 
 
 def _groups(whole: Whole, watched: Sequence[End], end: float) -> list[tuple[list[End], float]]:

@@ -19,8 +19,7 @@ from core.multibody.search.every_zero import EveryZero
 from core.multibody.search.first_of_motion import Expansions
 from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located
-from core.multibody.search.pieces import Expanded
-from core.multibody.trajectory.column_errors import PLACES_BETWEEN
+from core.multibody.search.pieces import Expanded, Pieces
 from core.multibody.trajectory.quantities import Sought
 from core.systems.trajectory import Column
 
@@ -111,31 +110,32 @@ class SearchAlong:
 
     def starts_with(self, value: Ball) -> bool:
         """Return whether the quantity has a value at time zero, as far as is known."""
-        return self._is_at(value, np.zeros(1))
+        return self._vanishes(self.sought.less(value), 1) and self._has_at_start(value)
 
     def has_throughout(self, value: Ball) -> bool:
-        """Return whether it has a value at the start, the end, and places that meet no fraction of a period."""
-        places = self.end * np.array([0.0, *PLACES_BETWEEN, 1.0])
-        return self._is_at(value, np.minimum(places, self.expanded))
+        """Return whether it has a value all the time: its Taylor series at time zero is no more than the value."""
+        return self._vanishes(self.sought.less(value)) and self._has_at_start(value)
 
-    def _is_at(self, value: Ball, times: Floats) -> bool:
-        """Return whether the quantity has a value at times of shape (t,), as far as is known."""
-        reach = np.full(len(times), self.end)
-        pieces = [motion(times, reach) for motion in self._motions]
-        values, _, band, _ = with_band(self.sought.less(value), pieces)
-        if not np.all(np.abs(values[:, 0, 0]) <= band[:, 0]):
-            return False
-        found = self.sampler(times).values
-        return all(self.sought.has(float(x), float(value)) for x in found)
+    def _has_at_start(self, value: Ball) -> bool:
+        return self.sought.has(float(self.sampler(np.zeros(1)).values[0]), float(value))
+
+    def _vanishes(self, quantity: Quantity, count: int | None = None) -> bool:
+        """Return whether the first coefficients of a quantity, or all of them, are zero as far as is known."""
+        values, _, band, _ = with_band(quantity, self._at_start)
+        return bool(np.all(np.abs(values[0, :count, 0]) <= band[0, :count]))
+
+    @cached_property
+    def _at_start(self) -> list[Pieces]:
+        """The motion just after time zero."""
+        return [motion(np.zeros(1), np.array([self.end])) for motion in self._motions]
 
     def extremes(self) -> tuple[Extreme, Extreme]:
         """Return the least and the largest value."""
-        between = self._between
-        if np.ptp(between.values) <= 2.0 * between.error:
-            # Of a constant no time is told from another.
-            constant = Extreme(float(between.values[0]), 0.0, self.end)
-            return constant, constant
         quantities = self.sought.turning()
+        if not self.end > 0.0 or self._vanishes(quantities[0]):
+            # Of a constant no time is told from another.
+            constant = Extreme(float(self.sampler(np.zeros(1)).values[0]), 0.0, self.end)
+            return constant, constant
         zeros = EveryZero(self._motions, quantities, self._coarse)
         turns = [one for one in zeros.until(min(self.end, self.expanded)) if one.time < self.end]
         candidates: list[tuple[float, Found | None]] = [(0.0, None)]
@@ -159,11 +159,6 @@ class SearchAlong:
                 error += 2.0**-52 * turn.time
             found.append(Extreme(float(column.values[k]), float(times[k]), error))
         return found[0], found[1]
-
-    @cached_property
-    def _between(self) -> Column:
-        """The quantity at the start, the end, and places that meet no fraction of a period: whether it is constant."""
-        return self.sampler(self.end * np.array([0.0, *PLACES_BETWEEN, 1.0]))
 
     @property
     def _motions(self) -> tuple[Expanded, ...]:

@@ -100,9 +100,18 @@ def test_before_friction_begins_at_the_start_nothing_is_determined() -> None:
         solve_scene(read(scene), [-0.1, 0.1], ("trajectory",))
 
 
-def test_works_and_a_turning_slip_are_answered_from_the_start_on() -> None:
-    with pytest.raises(InvalidParameter, match="summed up"):
-        solve_scene(read(thrown(2.0)), [-0.1, 0.1], ("work-in-time",))
+def test_works_before_the_start_are_those_of_the_parabola() -> None:
+    """Gravity does -m g (y - y0), with y - y0 = 2 t - g t^2/2; contacts do nothing."""
+    answer = solve_scene(read(thrown(2.0)), [-0.1, 0.1], ("work-in-time",))
+    times = np.array([-0.1, 0.1])
+    work = column(answer, "gravity.work")
+    assert np.allclose(
+        work.values, -2.0 * GRAVITY * (2.0 * times - GRAVITY * times**2 / 2.0), rtol=0.0, atol=work.error
+    )
+    assert not column(answer, "floor.impacts.work").values.any()
+
+
+def test_a_turning_slip_is_answered_from_the_start_on() -> None:
     across_a_slope: dict[str, Any] = {
         "gravity": [0, "-9.81*sin(pi/6)", "-9.81*cos(pi/6)"],
         "bodies": {"stone": {"mass": 1, "at": [0, 0, 0], "velocity": [2, 0, 0]}},

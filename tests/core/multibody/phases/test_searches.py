@@ -11,7 +11,7 @@ from core.errors import BudgetExceeded, InvalidParameter
 from core.multibody.answer import Occurrence
 from core.multibody.solve import solve_scene
 from core.multibody.trajectory.occurrences import ExtremesOf, When
-from tests.core.multibody.phases.test_sums_in_phases import bouncing
+from tests.core.multibody.phases.test_sums import bouncing
 from tests.core.multibody.worked_examples import read
 
 G = mpf("9.81")

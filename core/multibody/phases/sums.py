@@ -1,6 +1,6 @@
-"""What is summed up along a motion through events: works of every connection, friction and impacts, and paths.
+"""What is summed up along a motion: works of every connection, friction and impacts, and lengths of paths.
 
-Between events they are integrals, as in any other motion. A contact that slides takes the power mu N |slip|; an impact
+Between events they are integrals. A contact that slides takes the power mu N |slip|; an impact
 takes at once what its impulse times the mean rate is. Of bounces that accumulate the impacts take what all else leaves
 over of the change of kinetic energy.
 """
@@ -18,14 +18,15 @@ from core.arrays import Floats, Integers
 from core.errors import NotApplicable
 from core.multibody.contacts.contact_states import force_names
 from core.multibody.equations.packed import pair
+from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import rates_along
-from core.multibody.phases.phase import Phase, PhaseMotion
-from core.multibody.phases.stretches import Stretch
+from core.multibody.phases.phase import Phase
+from core.multibody.phases.phase_columns import ColumnsInPhases
+from core.multibody.phases.stretches import Stretch, stretches
 from core.multibody.start import energy_of
 from core.multibody.table.connection_effects import Unilateral, WorkTerm
 from core.multibody.table.momenta import work_of_potential
-from core.multibody.trajectory.along import State, power_of, smooth_times, speed_of, velocities_of
-from core.multibody.trajectory.integrals import integrated
+from core.multibody.trajectory.along import State, power_of, smooth_times, speed_of, summed, velocities_of
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
@@ -54,32 +55,33 @@ class _Sum:
         self.carried, self.error = self.carried + value, self.error + error
 
 
-class SumsInPhases:
-    """Sums along a motion at some times.
+class Sums:
+    """Sums along a motion at some times; of those before the start they are negative where what is summed up is not.
 
     Parameters
     ----------
-    motion : PhaseMotion
-    pieces : sequence of Stretch
-        Up to the latest time.
+    columns : ColumnsInPhases
     times : ndarray, shape (t,)
     how : str
     """
 
-    def __init__(self, motion: PhaseMotion, pieces: Sequence[Stretch], times: Floats, how: How) -> None:
-        self.motion, self.pieces, self.times, self.how = motion, pieces, times, how
-        starts = [piece.start for piece in pieces]
+    def __init__(self, columns: ColumnsInPhases, times: Floats, how: How) -> None:
+        self.motion, self.times, self.how = columns.motion, times, how
+        self.pieces = list(stretches(columns.motion, float(np.max(times, initial=0.0)), finer=columns.finer))
+        starts = [piece.start for piece in self.pieces]
         self.where = np.array([_last_before(starts, float(t)) for t in times], dtype=np.int64)
+        self._smooth: dict[tuple[int, tuple[int, ...], float], Floats] = {}
 
     def paths(self) -> dict[str, Column]:
         """Return the lengths of the paths of centres of mass (m)."""
         frames = self.motion.base.measures.coordinates.frames
-        sums = {f"{name}.path": self._sum() for name in frames}
-        for number, piece in enumerate(self.pieces):
-            nodes = smooth_times(piece.expansions, [list(frame.position) for frame in frames.values()], piece.expanded)
-            for name, velocity in velocities_of(frames).items():
-                self._integrate(sums[f"{name}.path"], number, piece, _sized(partial(speed_of, velocity)), nodes)
-        return {name: self._column(one, "m") for name, one in sums.items()}
+        velocities, found = velocities_of(frames), {}
+        for name, frame in frames.items():
+            one, function = self._sum(), _sized(partial(speed_of, velocities[name]))
+            for number, piece in enumerate(self.pieces):
+                self._integrate(one, number, piece, function, frame.position)
+            found[f"{name}.path"] = self._column(one, "m")
+        return found
 
     def works(self) -> dict[str, Column]:
         """Return the works of laws, and of friction and impacts of everything that touches (J).
@@ -113,7 +115,7 @@ class SumsInPhases:
                 if work.potential is not None:
                     self._by_potential(found[name], number, piece, work)
                 else:
-                    self._integrate(found[name], number, piece, _sized(power_of(piece.phase.models[0].whole, work)))
+                    self._integrate(found[name], number, piece, _sized(power_of(piece.whole, work)))
             for i, one in enumerate(piece.phase.unilateral):
                 if one.slip is not None:
                     self._rub(found, unknown, i, one, number, piece)
@@ -131,14 +133,16 @@ class SumsInPhases:
         return _Sum(np.zeros(len(self.times)), np.zeros(len(self.times)))
 
     def _column(self, one: _Sum, unit: str) -> Column:
-        error = float(np.max(one.errors + _SMALL * np.abs(one.values), initial=0.0))
+        # What a single stretch has come to is not added to anything.
+        rounded = _SMALL * np.abs(one.values) if len(self.pieces) > 1 else 0.0
+        error = float(np.max(one.errors + rounded, initial=0.0))
         return Column(one.values, unit, error, self.how)
 
     def _local(self, number: int, piece: Stretch) -> tuple[Integers, Floats]:
         """Return which samples are in a stretch, and their times since its start, with that of its end."""
         mine = np.flatnonzero(self.where == number)
-        late = [pair(arb(float(self.times[k])) - piece.start, 0)[0] for k in mine]
-        return mine, np.append(np.clip(np.array(late, dtype=np.float64), 0.0, piece.length), piece.length)
+        late = np.array([pair(arb(float(self.times[k])) - piece.start, 0)[0] for k in mine], dtype=np.float64)
+        return mine, np.append(np.clip(late, 0.0 if number else -np.inf, piece.length), piece.length)
 
     def _put(self, one: _Sum, mine: Integers, values: Floats, errors: Floats) -> None:
         """Take the values of a sum on a stretch, at its samples and its end."""
@@ -146,41 +150,52 @@ class SumsInPhases:
         one.add(float(values[-1]), float(errors[-1]))
 
     def _integrate(
-        self,
-        one: _Sum,
-        number: int,
-        piece: Stretch,
-        function: Power,
-        nodes: Floats | None = None,
+        self, one: _Sum, number: int, piece: Stretch, function: Power, of: Sequence[int] | None = None
     ) -> None:
+        """Add the integral of a function of some coordinates, of all for None."""
         mine, times = self._local(number, piece)
+        parts = piece.whole.parts_of(of)
 
         def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
             states = piece.states(times)
             own, size = function((states.q, states.v))
             return own, own if states.reference is None else function(states.reference)[0], size
 
-        nodes = smooth_times(piece.expansions, [], piece.expanded) if nodes is None else nodes
-        values, errors = integrated(integrand, nodes, times)
-        # An event that comes later or earlier changes what is summed up by as much as the summands on either side.
-        ends = np.abs(integrand(np.array([0.0, piece.length]))[0])
-        one.error += piece.late * float(ends[0])
+        nodes = partial(self._nodes, number, piece, parts)
+        values, errors = summed(integrand, nodes, partial(piece.period, parts), times)
+        if len(self.pieces) > 1:
+            # An event that comes later or earlier changes a sum by as much as the summands on either side.
+            ends = np.abs(integrand(np.array([0.0, piece.length]))[0])
+            one.error += piece.late * float(ends[0])
+            errors[-1] += (piece.late + 2.0**-53 * piece.length) * float(ends[1])
         self._put(one, mine, values, errors)
-        one.error += (piece.late + 2.0**-53 * piece.length) * float(ends[1])
+
+    def _nodes(self, number: int, piece: Stretch, parts: tuple[int, ...], end: float) -> Floats:
+        """Return times up to `end` between which functions of some parts are smooth, and the speeds in them."""
+        if (number, parts, end) not in self._smooth:
+            frames = piece.whole.measures.coordinates.frames.values()
+            moved = [list(frame.position) for frame in frames if piece.whole.parts_of(frame.position) == parts]
+            of = sorted({i for place in moved for i in place}) if moved else None
+            # The last sample may be as good as at a singular place; beyond, halves are as smooth.
+            found = smooth_times(piece.expansions(of), moved, BEFORE_SINGULAR * end)
+            self._smooth[number, parts, end] = found
+        return self._smooth[number, parts, end]
 
     def _by_potential(self, one: _Sum, number: int, piece: Stretch, work: WorkTerm) -> None:
         mine, times = self._local(number, piece)
         states = piece.states(times)
         start = np.array([pair(x, 0) for x in self.motion.phases[0].tracks[0].q])
         done, size = work_of_potential(work.potential or {}, start, states.q)
-        errors = _SMALL * size
         other = states.q.copy()
         # The first double of a pair would swallow an error smaller than its rounding.
         other[..., 1] += states.q_error
-        errors = errors + np.abs(work_of_potential(work.potential or {}, start, other)[0] - done)
+        moved = np.abs(work_of_potential(work.potential or {}, start, other)[0] - done)
+        if states.reference is not None:
+            by_reference = work_of_potential(work.potential or {}, start, states.reference[0])[0]
+            moved = np.maximum(moved, _MARGIN * np.abs(by_reference - done))
         # It is a function of the place: nothing is carried over.
         one.carried, one.error = 0.0, 0.0
-        self._put(one, mine, done, errors)
+        self._put(one, mine, done, _SMALL * size + moved)
 
     def _impacts(self, found: dict[str, _Sum], unknown: set[str], phase: int) -> None:
         """Add the works of the impacts with which a phase begins."""
@@ -204,7 +219,7 @@ class SumsInPhases:
         if not _determined(phase, force_names(one)[0]):
             unknown.add(name)
             return
-        whole = phase.models[0].whole
+        whole = piece.whole
 
         def power(state: State) -> tuple[Floats, Floats]:
             q, v = state
