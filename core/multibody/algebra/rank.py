@@ -52,6 +52,12 @@ class Elimination:
         self.pivots[pivot] = (rest, value)
         return None
 
+    def copy(self) -> Elimination:
+        """Return the same equations, to which others can be added."""
+        found = Elimination(self._priority)
+        found.pivots = {j: (dict(line), value) for j, (line, value) in self.pivots.items()}
+        return found
+
     def reduced(self, line: Mapping[int, Ball], value: Ball) -> tuple[Line, Ball]:
         """Return an equation with every determined unknown replaced."""
         rest: Line = {}

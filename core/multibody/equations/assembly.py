@@ -121,11 +121,11 @@ def least_change(table: Table, lines: Sequence[Line], residuals: Sequence[Ball])
 
 
 def assemble_rates(
-    table: Table, given: Sequence[Given], paths: Mapping[str, Path], wished: Sequence[Row] = ()
+    table: Table, given: Sequence[Given], paths: Mapping[str, Path], gaps: Sequence[Row] = ()
 ) -> list[str]:
     """Set the rates at the start: those given, and of the others those of least kinetic energy.
 
-    The rows `wished` hold as far as the others leave them open.
+    The rates of `gaps` that touch are zero as far as the others leave them open, and positive where they do not hold.
 
     Raises
     ------
@@ -158,10 +158,25 @@ def assemble_rates(
                 remedy="leave it out, or change what it contradicts",
             )
         noticed.append("/".join(map(str, entry.path)))
-    for row in wished:
-        elimination.add(row.line(table.q), row.rate)
-    table.v = _least_energy(table, elimination)
+    table.v = _least_energy(table, _with_gaps(elimination, [row.line(table.q) for row in gaps]))
     return noticed
+
+
+def _with_gaps(others: Elimination, gaps: Sequence[Line]) -> Elimination:
+    """Return equations with those of gaps that stay closed, in an order in which none closes that can stay or open.
+
+    What would have to close beside those before it, as a string whose end is drawn off a floor, is held before them.
+    """
+    first: list[int] = []
+    while True:
+        found = others.copy()
+        for i in (*first, *(i for i in range(len(gaps)) if i not in first)):
+            left = found.add(gaps[i], ZERO)
+            if left is not None and left > 0 and i not in first:
+                first.insert(0, i)
+                break
+        else:
+            return found
 
 
 def _least_energy(table: Table, elimination: Elimination) -> list[Ball]:

@@ -132,3 +132,24 @@ def test_a_rounded_place_is_compared_with_the_body_and_not_with_a_component_that
     rod["at"] = ["0.5", "1e-5"]
     with pytest.raises(InvalidParameter, match="agree with the positions"):
         solve_scene(read({"gravity": [0, -10], "bodies": {"rod": rod}, "connections": [pin]}))
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (1, 0, 2), (1, 2, 0), (2, 1, 0)])
+def test_what_a_motor_lifts_off_a_floor_by_a_string_rises_with_it_in_any_order(order: tuple[int, ...]) -> None:
+    """The end of an arm of 1 m at 1 rad/s rises at 1 m/s, and with it what hangs there, up the slope beside it."""
+    bodies = {
+        "arm": {"mass": 1, "inertia": 1, "at": [0, 0], "places": {"end": [1, 0]}},
+        "load": {"mass": 2, "at": [1, -1]},
+    }
+    one_sided = [
+        {"kind": "contact", "place": "load", "on": {"at": [0, -1]}, "restitution": 1},
+        {"kind": "string", "through": ["load", "arm.end"]},
+        {"kind": "contact", "place": "load", "on": {"at": [1, -1], "slope": {"degrees": 30}}},
+    ]
+    driven = [{"kind": "pin", "a": "arm", "b": [0, 0]}, {"kind": "motor", "a": "arm", "rate": 1}]
+    connections = [*driven, *(one_sided[i] for i in order)]
+    scene = read({"gravity": [0, -9.81], "bodies": bodies, "connections": connections})
+    answer = solve_scene(scene, [0.0, 0.1])
+    assert column(answer, "load.velocity").values[0][1] == 1.0
+    assert answer.energy is not None
+    assert answer.energy.kinetic == pytest.approx(0.5 + (1 / math.sin(math.pi / 6)) ** 2, rel=1e-15)
