@@ -11,14 +11,14 @@ R. M. McConnell, K. Mehlhorn, S. Näher, P. Schweitzer, "Certifying algorithms",
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.errors import MechanicsError
 from core.multibody.answer import SceneSolution
-from core.multibody.audit.balanced import Moment, check_balance
-from core.multibody.audit.chosen_times import generator, quickness, rows_of, windows
+from core.multibody.audit.balanced import Accelerated, check_balance, joined_accelerations
+from core.multibody.audit.chosen_times import generator, largest_rates, quickness, rows_of, windows
 from core.multibody.audit.claims import check_claims
 from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.energy import Energies
@@ -28,14 +28,14 @@ from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, c
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, moved
 from core.multibody.audit.repetition import check_repetition, times_of_period
-from core.multibody.audit.samples import Columns, Samples, joined, samples_of
+from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
 from core.multibody.audit.searches import Searches
 from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of
-from core.multibody.audit.windows import NODES, check_window, nodes
+from core.multibody.audit.windows import NODES, check_windows, nodes
 from core.multibody.language.scene import Scene
 
-Sampler = Callable[[Numbers], Columns]
-"""From times to the columns of places, rates and forces of the motion that was answered."""
+Sampler = Callable[[Numbers, bool], Columns]
+"""From times, and whether forces are wanted, to the columns of the motion that was answered."""
 
 MEANT = 1e-6
 """Relative mismatch of positions up to which rounded figures are taken to be meant as the connections say."""
@@ -67,38 +67,36 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
 class _Audit:
     """One audit, with what its laws share.
 
-    All samples are rows of one set: that of the start, those of windows and of the period, those of the answer. Behind
-    them come the start that the accelerations lead to, a short time before and after, and that of the description.
+    All samples are rows of one set: that of the start, those of windows, of the period and of impacts, those of the
+    answer. Behind them come the start that the accelerations lead to, a short time before and after, and that of the
+    description.
     """
 
     def __init__(self, description: Description, answer: SceneSolution, times: Numbers) -> None:
         self.description, self.answer, self.random = description, answer, generator(description, times)
         self.latest = max(float(times.max(initial=0.0)), 0.0)
         found = answer.trajectory
-        self.own_samples: Samples | None = None
+        self.own_rows: Part | None = None
         self.begin = self.end = 0.0
         if found is not None and len(found.time):
             self.begin, self.end = min(float(found.time.min()), 0.0), max(float(found.time.max()), 0.0)
             if all(f"{name}.velocity" in found.columns for name in description.bodies):
                 rows = rows_of(self.random, len(found.time))
-                self.own_samples = samples_of(description, found.time, found.columns, rows)
+                self.own_rows = Part(found.time[rows], found.columns, rows)
         # A method that a client names computes samples of its own.
         self.own = found is None or found.method == CLOSED_FORM
 
     def worst(self, sampler: Sampler) -> Failure | None:
         """Compare everything, and return the worst failure."""
         description, answer = self.description, self.answer
-        samples = self.own_samples
         asked = self._asked(sampler)
-        if asked is not None:
-            samples = asked.samples if samples is None else asked.samples.followed_by(samples)
-        if samples is None:
+        parts = [part for part in (None if asked is None else asked.part, self.own_rows) if part is not None]
+        if not parts:
             return None
-        after = None
-        if asked is not None:
-            gains = accelerations_of(description, answer)
-            if gains is not None and _spun(description, samples):
-                after = AfterStart(description, gains, samples.at(slice(0, 1)))
+        samples = samples_of(description, parts)
+        spun = _spun(description, samples)
+        gains = None if asked is None or not spun else accelerations_of(description, answer)
+        after = None if gains is None else AfterStart(description, gains, samples.at(slice(0, 1)))
         behind = [] if after is None else [after.samples()]
         every = joined([(samples.placement, samples.motion), *behind, _described(description)])
         ahead = moved(*every)
@@ -109,10 +107,12 @@ class _Audit:
         check_samples(ledger, measures, samples, states, sizes)
         if asked is not None:
             self._check_motion(ledger, samples, ahead, after, measures, asked, sizes)
+            if spun:
+                self._check_energy(ledger, samples)
             if asked.searches is not None:
                 found = answer.trajectory
                 own = (np.zeros(0), {}) if found is None else (found.time, found.columns)
-                asked.searches.check(ledger, asked.columns, *own)
+                asked.searches.check(ledger, asked.part.columns, *own)
         return ledger.worst
 
     def _check_motion(
@@ -127,45 +127,60 @@ class _Audit:
     ) -> None:
         """Compare what needs the start or windows of the motion."""
         description, answer, freedoms = self.description, self.answer, Freedoms(self.description)
-        start, moments, motion = samples.at(slice(0, 1)), [], dict(samples.motion)
+        start = samples.at(slice(0, 1))
         check_places(ledger, description, start)
         if after is not None:
             after.check(ledger, measures, len(samples.times))
-            if answer.forces is not None and not description.undefined:
-                none, forces = np.zeros((freedoms.count, 1)), forces_of(answer)
-                errors = {name: np.zeros(1) for name in forces}
-                law = "Newton and Euler at the start"
-                moments.append(Moment(law, slice(0, 1), after.gains, forces, errors, none, stated=False))
-                for own in measures:
-                    rest = own.connection.own_rest(start.placement, start.motion, after.gains_as_motion, forces)
-                    if rest is not None:
-                        law, allowed = "equation of the chain at the start", 8.0 * ledger.rounding * rest[1]
-                        ledger.compare(law, own.connection.name, start.times, rest[0], allowed)
-        for number, half in enumerate(asked.halves):
-            rows = slice(1 + number * NODES, 1 + (number + 1) * NODES)
-            window = samples.at(rows)
-            gains = check_window(ledger, description, freedoms, window, _rows(ahead, rows), half, sizes.extent)
-            for name, twist in gains.spins.items():
-                spin = motion[name].spin
-                spin = np.zeros((len(samples.times), 3)) if spin is None else spin
-                spin[rows] = twist.spin
-                motion[name] = Twist(motion[name].velocity, spin)
-            moments.append(
-                Moment("Newton and Euler", rows, gains.accelerations, window.forces, window.force_errors, gains.unsure,
-                       stated=True)
-            )  # fmt: skip
-        check_balance(ledger, description, freedoms, samples, motion, moments)
+            forces = forces_of(answer)
+            for own in measures if forces else ():
+                rest = own.connection.own_rest(start.placement, start.motion, after.gains_as_motion, forces)
+                if rest is not None:
+                    law, allowed = "equation of the chain at the start", 8.0 * ledger.rounding * rest[1]
+                    ledger.compare(law, own.connection.name, start.times, rest[0], allowed)
+        self._check_newton(ledger, freedoms, samples, ahead, after, asked, sizes)
+        first = 1 + len(asked.halves) * NODES
         if asked.repeated:
-            first = 1 + len(asked.halves) * NODES
             later = samples.at(slice(first, first + asked.repeated))
             check_repetition(ledger, description, answer, start, later)
+        first += asked.repeated
         if asked.impacts is not None:
-            first = 1 + len(asked.halves) * NODES + asked.repeated
             struck = samples.at(slice(first, first + len(asked.impacts.times)))
             asked.impacts.check(ledger, description, freedoms, struck)
         check_claims(ledger, answer, samples, None if after is None else after.gains, sizes.typical())
-        if _spun(description, samples):
-            self._check_energy(ledger, samples)
+
+    def _check_newton(
+        self,
+        ledger: Ledger,
+        freedoms: Freedoms,
+        samples: Samples,
+        ahead: Placement,
+        after: AfterStart | None,
+        asked: _Asked,
+        sizes: Sizes,
+    ) -> None:
+        """Compare rates in windows, and the laws of Newton and Euler there and at the start."""
+        description, last = self.description, 1 + len(asked.halves) * NODES
+        begins = after is not None and not description.undefined
+        rows = slice(0 if begins else 1, last)
+        if not begins and not asked.halves:
+            return
+        some = samples.at(rows)
+        accelerations, unsure = {} if after is None else dict(after.gains), np.zeros((freedoms.count, int(begins)))
+        if asked.halves:
+            inner = samples.at(slice(1, last))
+            found = check_windows(
+                ledger, description, freedoms, inner, _rows(ahead, slice(1, last)), asked.halves, sizes.extent
+            )
+            unsure = np.concatenate([unsure, found.unsure], axis=1)
+            own = [accelerations, found.accelerations] if begins else [found.accelerations]
+            accelerations = {name: joined_accelerations([one[name] for one in own]) for name in found.accelerations}
+            motion = dict(some.motion)
+            for name, spin in found.spins.items():
+                motion[name] = Twist(motion[name].velocity, np.concatenate([np.zeros((int(begins), 3)), spin]))
+            some = replace(some, motion=motion)
+        if begins:
+            some = some.with_first_forces(forces_of(self.answer))
+        check_balance(ledger, description, freedoms, Accelerated(some, accelerations, unsure, begins))
 
     def _check_energy(self, ledger: Ledger, samples: Samples) -> None:
         description, answer = self.description, self.answer
@@ -189,31 +204,42 @@ class _Audit:
 
         None where the motion is not known there: laws that need it are not checked then.
         """
+        description, answer = self.description, self.answer
+        forces = self._needs_forces()
         try:
             placed: list[tuple[float, float]] = []
             searches, impacts, repeated, struck = None, None, np.zeros(0), np.zeros(0)
             if self.own and self.end > self.begin:
-                rated = self.own_samples
-                if rated is None:
-                    rated = samples_of(self.description, np.zeros(1), sampler(np.zeros(1)), slice(None))
-                quick = quickness(self.description, rated)
-                placed = windows(self.random, self.answer, self.begin, self.end, quick)
-                if any(event.impulses for event in self.answer.events):
-                    impacts = Impacts(self.answer, self.random, quick, self.end)
+                rated = sampler(np.zeros(1), False) if self.own_rows is None else self.own_rows.columns
+                places = {name: Pose(rated[f"{name}.position"].values) for name in description.bodies}
+                quick = quickness(description, places, *largest_rates(rated))
+                placed = windows(self.random, answer, self.begin, self.end, quick)
+                if any(event.impulses for event in answer.events):
+                    impacts = Impacts(answer, self.random, quick, self.end)
                     struck = impacts.times
-                if self.answer.occurrences or self.answer.extremes:
-                    ended = self.answer.ended
-                    searches = Searches(self.answer, self.random, self.latest if ended is None else ended.time)
+                if answer.occurrences or answer.extremes:
+                    ended = answer.ended
+                    searches = Searches(answer, self.random, self.latest if ended is None else ended.time)
+                    forces = True
             if self.own:
-                repeated = times_of_period(self.answer)
+                repeated = times_of_period(answer)
             found = np.zeros(0) if searches is None else searches.times
             asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), repeated, struck, found])
-            columns = sampler(asked)
-            rows = slice(0, len(asked) - len(found))
-            samples = samples_of(self.description, asked, columns, rows)
-            return _Asked(samples, columns, [half for _, half in placed], len(repeated), impacts, searches)
+            columns, count = sampler(asked, forces), len(asked) - len(found)
+            part = Part(asked[:count], columns, slice(0, count))
+            return _Asked(part, [half for _, half in placed], len(repeated), impacts, searches)
         except MechanicsError:
             return None
+
+    def _needs_forces(self) -> bool:
+        """Return whether forces in time are answered, decide what touches, or belong to what has mass of its own.
+
+        The equations of motion hold without those that keep what is held.
+        """
+        found = self.answer.trajectory
+        if found is not None and any(column.unit in ("N", "N m") for column in found.columns.values()):
+            return True
+        return any(connection.mass or connection.opens for connection in self.description.connections)
 
 
 @dataclass(frozen=True)
@@ -222,10 +248,8 @@ class _Asked:
 
     Attributes
     ----------
-    samples : Samples
-        At the start, in windows, after the period.
-    columns : mapping of str to Column
-        There, and at the times of the searches behind.
+    part : Part
+        At the start, in windows, after the period, beside impacts; its columns have those of the searches behind.
     halves : list of float
         Half of the widths of the windows (s).
     repeated : int
@@ -235,8 +259,7 @@ class _Asked:
     searches : Searches or None
     """
 
-    samples: Samples
-    columns: Columns
+    part: Part
     halves: list[float]
     repeated: int
     impacts: Impacts | None

@@ -3,121 +3,100 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import MARGIN, Ledger
-from core.multibody.audit.newton import Acceleration, Forces, Freedoms, balance
-from core.multibody.audit.placement import Motion, Numbers, Undefined
+from core.multibody.audit.newton import Acceleration, Freedoms, balance
+from core.multibody.audit.placement import Numbers, Undefined
 from core.multibody.audit.samples import Samples
 
 
 @dataclass(frozen=True)
-class Moment:
-    """Samples with their accelerations.
+class Accelerated:
+    """Samples with their accelerations: that of the start, if the answer has its accelerations, and those of windows.
 
     Attributes
     ----------
-    law : str
-    rows : slice
-        Which of the samples of the audit.
+    samples : Samples
+        With the spins of tops; their forces are those of the answer, NaN where it does not have them.
     accelerations : mapping of str to Acceleration
-    forces, force_errors : mapping of str to ndarray, shape (n,)
     unsure : ndarray, shape (freedoms, n)
         How wrong the inertial terms may be.
-    stated : bool
-        Whether the stated errors of places and rates enter, beside rounding.
+    starts : bool
+        Whether the first sample is that of the start, for which stated errors do not enter.
     """
 
-    law: str
-    rows: slice
+    samples: Samples
     accelerations: Mapping[str, Acceleration]
-    forces: Forces
-    force_errors: Forces
     unsure: Numbers
-    stated: bool
+    starts: bool
 
-
-def check_balance(
-    ledger: Ledger,
-    description: Description,
-    freedoms: Freedoms,
-    samples: Samples,
-    motion: Motion,
-    moments: Sequence[Moment],
-) -> None:
-    """Compare inertial terms with the forces of the answer, at all moments at once.
-
-    Parameters
-    ----------
-    samples : Samples
-        Those of the audit.
-    motion : mapping of str to Twist
-        That of the samples, with the spins of tops.
-    """
-    # Rates that are not known in a window say nothing of the forces.
-    moments = [moment for moment in moments if np.isfinite(moment.unsure).all()]
-    if not moments:
-        return
-    rows = np.concatenate([np.arange(len(samples.times))[moment.rows] for moment in moments])
-    counts = [moment.unsure.shape[1] for moment in moments]
-    some = Samples(
-        samples.times, samples.placement, motion, {}, samples.errors, {}, samples.placed
-    ).at(rows)  # fmt: skip
-    accelerations = {name: _joined([moment.accelerations[name] for moment in moments]) for name in description.bodies}
-    forces = _spread([moment.forces for moment in moments], counts, np.nan)
-    known = _spread([moment.force_errors for moment in moments], counts, 0.0)
-    try:
-        found = balance(description, some.placement, some.motion, accelerations, forces, known, freedoms)
-    except Undefined:
-        return
-    left = np.abs(found.left())
-    allowed = found.allowed(np.concatenate([moment.unsure for moment in moments], axis=1), ledger.rounding)
-    ledger.checked += 1
-    beyond = np.flatnonzero(~(left <= allowed).all(axis=0))
-    if not len(beyond):
-        return
-    left, allowed = left[:, beyond], allowed[:, beyond]
-    stated = np.repeat([moment.stated for moment in moments], counts)[beyond]
-    there = {name: _rows(one, beyond) for name, one in accelerations.items()}
-    allowed = allowed + stated * _moved(
-        description, some.at(beyond), there, {name: values[beyond] for name, values in forces.items()}
-    )
-    laws = np.repeat([moment.law for moment in moments], counts)[beyond]
-    for k, worst in enumerate(np.argmax(left - allowed, axis=0).tolist()):
-        name = max(
-            (one for one in freedoms.where if freedoms.where[one][0] <= worst), key=lambda one: freedoms.where[one]
+    def at(self, rows: Numbers) -> Accelerated:
+        """Return some of the samples by their numbers."""
+        accelerations = {
+            name: Acceleration(one.linear[rows], None if one.angular is None else one.angular[rows])
+            for name, one in self.accelerations.items()
+        }
+        starts = self.starts and bool(len(rows)) and int(rows[0]) == 0
+        return replace(
+            self,
+            samples=self.samples.at(rows),
+            accelerations=accelerations,
+            unsure=self.unsure[:, rows],
+            starts=starts,
         )
-        time = some.times[beyond[k : k + 1]]
-        ledger.compare(str(laws[k]), name, time, left[worst, k : k + 1], allowed[worst, k : k + 1])
 
 
-def _joined(parts: Sequence[Acceleration]) -> Acceleration:
+def joined_accelerations(parts: Sequence[Acceleration]) -> Acceleration:
+    """Return accelerations of one body at several moments, one after another."""
     angular = [one.angular for one in parts if one.angular is not None]
     return Acceleration(np.concatenate([one.linear for one in parts]), np.concatenate(angular) if angular else None)
 
 
-def _rows(one: Acceleration, rows: Numbers) -> Acceleration:
-    return Acceleration(one.linear[rows], None if one.angular is None else one.angular[rows])
+def check_balance(ledger: Ledger, description: Description, freedoms: Freedoms, moments: Accelerated) -> None:
+    """Compare inertial terms with the forces of the answer, at all moments at once."""
+    known = np.isfinite(moments.unsure)
+    if not known.all():
+        # Rates that are not known in a window say nothing of the forces.
+        moments = moments.at(np.flatnonzero(known.all(axis=0)))
+    if not len(moments.samples.times):
+        return
+    try:
+        left, allowed = _left(ledger, description, freedoms, moments)
+        ledger.checked += 1
+        within = left <= allowed
+        if within.all():
+            return
+        moments = moments.at(np.flatnonzero(~within.all(axis=0)))
+        left, allowed = _left(ledger, description, freedoms, moments)
+        changes = _moved(description, moments)
+    except Undefined:
+        return
+    if moments.starts:
+        changes[:, 0] = 0.0
+    allowed += changes
+    for k, worst in enumerate(np.argmax(left - allowed, axis=0).tolist()):
+        law = "Newton and Euler at the start" if moments.starts and k == 0 else "Newton and Euler"
+        time, body = moments.samples.times[k : k + 1], freedoms.body(worst)
+        ledger.compare(law, body, time, left[worst, k : k + 1], allowed[worst, k : k + 1])
 
 
-def _spread(parts: Sequence[Forces], counts: Sequence[int], missing: float) -> dict[str, Numbers]:
-    """Return forces at all moments, with a number where one of them lacks a force."""
-    names = dict.fromkeys(name for part in parts for name in part)
-    lacking = [np.full(count, missing) for count in counts]
-    return {
-        name: np.concatenate([part.get(name, none) for part, none in zip(parts, lacking, strict=True)])
-        for name in names
-    }  # fmt: skip
+def _left(
+    ledger: Ledger, description: Description, freedoms: Freedoms, moments: Accelerated
+) -> tuple[Numbers, Numbers]:
+    """Return what is left over of the equations, and what may be apart from stated errors, shapes (freedoms, n)."""
+    some = moments.samples
+    found = balance(description, some.placement, some.motion, moments.accelerations, some.forces, freedoms)
+    return np.abs(found.left()), found.allowed(moments.unsure, ledger.rounding)
 
 
-def _moved(
-    description: Description, samples: Samples, accelerations: Mapping[str, Acceleration], forces: Forces
-) -> Numbers:
-    """Return by how much the stated errors of places and rates change the equations, shape (freedoms, n)."""
-    changed = samples.perturbed(description.bodies)
+def _moved(description: Description, moments: Accelerated) -> Numbers:
+    """Return by how much the stated errors of places, rates and forces change the equations, shape (freedoms, n)."""
+    some = moments.samples
+    changed = some.perturbed(description.bodies, some.forces)
     count = next(iter(changed.placement.values())).position.shape[0]
     flat = changed.flattened()
     repeated = {
@@ -125,10 +104,9 @@ def _moved(
             np.tile(one.linear, (count, 1)),
             None if one.angular is None else np.tile(one.angular, (count, *(1,) * (one.angular.ndim - 1))),
         )
-        for name, one in accelerations.items()
+        for name, one in moments.accelerations.items()
     }
-    every = {name: np.tile(values, count) for name, values in forces.items()}
-    left = balance(description, flat.placement, flat.motion, repeated, every).left()
+    left = balance(description, flat.placement, flat.motion, repeated, flat.forces).left()
     left = left.reshape(left.shape[0], count, -1)
     moved: Numbers = MARGIN * np.abs(left[:, 1:] - left[:, :1]).sum(axis=1)
     return moved

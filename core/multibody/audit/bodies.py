@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,11 @@ class RigidBody:
     velocity: Numbers | None = None
     angular_velocity: Numbers | None = None
     places: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    @cached_property
+    def moment(self) -> float:
+        """Largest component of the inertia, 0 of a particle (kg m^2)."""
+        return 0.0 if self.inertia is None else float(np.abs(self.inertia).max())
 
 
 class Reader:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, log, sqrt
+from math import frexp, hypot, ldexp, log, sqrt
 from random import Random
 from zlib import crc32
 
@@ -10,8 +10,9 @@ import numpy as np
 
 from core.multibody.answer import SceneSolution
 from core.multibody.audit.definitions import Description
-from core.multibody.audit.placement import Numbers
-from core.multibody.audit.samples import Samples
+from core.multibody.audit.placement import Numbers, Placement
+from core.multibody.audit.samples import Columns
+from core.multibody.audit.windows import GRID
 
 WIDTH = 0.05
 """Half of the width of a window, in radians of the quickest motion that the scene is known to have."""
@@ -28,9 +29,9 @@ MOST_ROWS = 200
 
 def generator(description: Description, times: Numbers) -> Random:
     """Return random numbers that depend on the question alone."""
-    seed = crc32(np.ascontiguousarray(times).tobytes())
+    seed = crc32(times.tobytes())
     for pose in description.start.values():
-        seed = crc32(np.ascontiguousarray(pose.position).tobytes(), seed)
+        seed = crc32(pose.position.tobytes(), seed)
     return Random(seed)
 
 
@@ -41,29 +42,40 @@ def rows_of(random: Random, count: int) -> Numbers:
     return np.array([0, *sorted(random.sample(range(1, count - 1), MOST_ROWS - 2)), count - 1])
 
 
-def quickness(description: Description, samples: Samples) -> float:
+def quickness(description: Description, placement: Placement, speed: float, spin: float) -> float:
     """Return the largest rate that the scene is known to change at (rad/s), 0 where none is known.
 
     Spins and what is prescribed, speeds and forces over lengths, and stiffness over masses.
+
+    Parameters
+    ----------
+    placement : mapping of str to Pose
+    speed, spin : float
+        Largest components of velocities and spins (m/s, rad/s).
     """
-    found, masses = 0.0, {name: body.mass for name, body in description.bodies.items() if body.mass > 0.0}
-    for twist in samples.motion.values():
-        if twist.spin is not None:
-            found = max(found, float(np.abs(twist.spin).max()))
+    found, masses = spin, {name: body.mass for name, body in description.bodies.items() if body.mass > 0.0}
     for body in description.bodies.values():
         if body.angular_velocity is not None:
             found = max(found, float(np.max(np.abs(body.angular_velocity))))
     least = min(masses.values(), default=0.0)
     lengths = [connection.reach for connection in description.connections if connection.reach > 0.0]
     if not lengths:
-        lengths = [max(float(np.abs(pose.position).max()) for pose in samples.placement.values())]
+        lengths = [max(float(np.abs(pose.position).max()) for pose in placement.values())]
     if min(lengths) > 0.0:
         length = min(lengths)
-        speed = max(float(np.abs(twist.velocity).max()) for twist in samples.motion.values())
         found = max(found, speed / length, sqrt(hypot(*description.gravity) / length))
     for connection in description.connections:
-        found = max(found, connection.quickness(samples.placement, masses, least))
+        found = max(found, connection.quickness(placement, masses, least))
     return found
+
+
+def largest_rates(columns: Columns) -> tuple[float, float]:
+    """Return the largest components of velocities and spins among columns (m/s, rad/s)."""
+    found = {"m/s": 0.0, "rad/s": 0.0}
+    for column in columns.values():
+        if column.unit in found:
+            found[column.unit] = max(found[column.unit], float(np.abs(column.values).max(initial=0.0)))
+    return found["m/s"], found["rad/s"]
 
 
 def windows(random: Random, answer: SceneSolution, begin: float, end: float, rate: float) -> list[tuple[float, float]]:
@@ -95,5 +107,8 @@ def _window(random: Random, first: float, last: float, rate: float) -> tuple[flo
     room = (last - first) * (1.0 - 1e-6) / 2.0
     half = min(room, WIDTH / rate if rate > 0.0 else room)
     middle = random.uniform(first + half * (1.0 + 1e-6), last - half * (1.0 + 1e-6))
+    # A power of two, and a multiple of its share: the times of the samples are doubles.
+    half = ldexp(1.0, frexp(half)[1] - 1)
+    middle = round(middle / half * GRID) * (half / GRID)
     # Times of doubles are too coarse where the window is next to nothing beside them.
     return (middle, half) if half > 2.0**-26 * max(abs(first), abs(last)) else None

@@ -49,6 +49,11 @@ class Definition:
         return type(self).held_rates is not Definition.held_rates
 
     @property
+    def opens(self) -> bool:
+        """Whether it is one-sided."""
+        return type(self).gaps is not Definition.gaps
+
+    @property
     def derives(self) -> bool:
         """Whether some of its forces follow from others."""
         return type(self).derived is not Definition.derived

@@ -58,35 +58,43 @@ class Freedoms:
             self.where[name] = (self.count, self.count + self.dimension if turns else -1)
             self.count += self.dimension + (spins if turns else 0)
         self.spins = spins
-        self._virtual: dict[tuple[str, ...], tuple[list[int], Motion]] = {}
+        self._virtual: dict[tuple[str, ...], tuple[list[int] | slice, Motion]] = {}
 
     def body(self, number: int) -> str:
         """Return the body to which a component belongs."""
         return max((first, name) for name, (first, _) in self.where.items() if first <= number)[1]
 
-    def virtual(self, bodies: tuple[str, ...]) -> tuple[list[int], Motion]:
+    def moving(self, body: str) -> slice:
+        """Return the components of the velocity of a body."""
+        first = self.where[body][0]
+        return slice(first, first + self.dimension)
+
+    def turning(self, body: str) -> slice:
+        """Return the components of the spin of a body that has one."""
+        first = self.where[body][1]
+        return slice(first, first + self.spins)
+
+    def virtual(self, bodies: tuple[str, ...]) -> tuple[list[int] | slice, Motion]:
         """Return the components of some bodies, and the unit virtual motions along each; they are the first axis."""
         if bodies not in self._virtual:
             self._virtual[bodies] = self._made(bodies)
         return self._virtual[bodies]
 
-    def _made(self, bodies: tuple[str, ...]) -> tuple[list[int], Motion]:
+    def _made(self, bodies: tuple[str, ...]) -> tuple[list[int] | slice, Motion]:
         numbers: list[int] = []
         for name in bodies:
             first, spin = self.where[name]
-            numbers.extend(range(first, first + self.dimension))
-            if spin >= 0:
-                numbers.extend(range(spin, spin + self.spins))
-        units = np.eye(self.count)[numbers][:, None, :]
-        motion = {}
+            numbers.extend(range(first, first + self.dimension + (self.spins if spin >= 0 else 0)))
+        units, motion, own = np.eye(len(numbers))[:, None], {}, 0
         for name in bodies:
-            first, spin = self.where[name]
-            velocity = units[..., first : first + self.dimension]
-            turning = None
-            if spin >= 0:
-                turning = units[..., spin] if self.spins == 1 else units[..., spin : spin + 3]
+            velocity, turning = units[..., own : own + self.dimension], None
+            own += self.dimension
+            if self.where[name][1] >= 0:
+                turning = units[..., own] if self.spins == 1 else units[..., own : own + 3]
+                own += self.spins
             motion[name] = Twist(velocity, turning)
-        return numbers, motion
+        whole = numbers == list(range(numbers[0], numbers[0] + len(numbers))) if numbers else False
+        return slice(numbers[0], numbers[0] + len(numbers)) if whole else numbers, motion
 
 
 @dataclass(frozen=True)
@@ -101,22 +109,19 @@ class Balance:
         Sum of the sizes of its terms.
     free : ndarray, shape (freedoms, freedoms, samples) or None
         Projection on what is not held by unanswered forces; None where nothing is.
-    unsure : ndarray
-        What the stated errors of the forces change them by.
     """
 
     rest: Numbers
     size: Numbers
     free: Numbers | None
-    unsure: Numbers
 
     def left(self) -> Numbers:
         """Return what is left over apart from what unanswered forces may do, shape (freedoms, samples)."""
         return self.rest if self.free is None else np.einsum("ijt,jt->it", self.free, self.rest)
 
     def allowed(self, of_inertia: Numbers, rounding: float) -> Numbers:
-        """Return what may be left over, from the errors of the inertial terms, of forces and of rounding."""
-        found = of_inertia + self.unsure + rounding * self.size
+        """Return what may be left over, from the errors of the inertial terms and of rounding."""
+        found = of_inertia + rounding * self.size
         if self.free is not None:
             found = np.einsum("ijt,jt->it", np.abs(self.free), found)
         # Directions are known to rounding: a large force leaves some of it at right angles to its line.
@@ -130,7 +135,6 @@ def balance(
     motion: Motion,
     accelerations: Mapping[str, Acceleration],
     forces: Forces,
-    force_errors: Forces | None = None,
     freedoms: Freedoms | None = None,
 ) -> Balance:
     """Return what is left over of the equations of motion at some samples.
@@ -140,38 +144,38 @@ def balance(
     placement, motion, accelerations
         With one leading axis, the samples.
     forces : mapping of str to ndarray, shape (samples,)
-        Those of the answer. Those that it does not determine are left out, or NaN, and projected out.
-    force_errors : mapping of str to ndarray, shape (samples,)
+        Those of the answer. Where one is left out, or NaN, it is what its law says; without a law it is projected out.
     """
     freedoms = freedoms or Freedoms(description)
     samples = next(iter(placement.values())).position.shape[0]
-    rest, size, unsure = (np.zeros((freedoms.count, samples)) for _ in range(3))
+    rest, size = np.zeros((2, freedoms.count, samples))
     for name, body in description.bodies.items():
         _add_inertia(rest, size, freedoms, body, description.gravity, placement, motion, accelerations[name])
     held: list[Numbers] = []
     for connection in description.connections:
         numbers, virtual = freedoms.virtual(connection.bodies)
-        for name, effort in connection.efforts(placement, virtual).items():
-            force, known = forces.get(name), 0.0 if force_errors is None else force_errors.get(name, 0.0)
-            if force is None:
-                held.append(_spread(effort, numbers, rest.shape))
-                continue
-            open_ = np.isnan(force)
-            if open_.any():
-                # A direction that vanishes holds nothing.
-                held.append(_spread(effort * open_, numbers, rest.shape))
-                force, known = np.where(open_, 0.0, force), np.where(open_, 0.0, known)
+        efforts = connection.efforts(placement, virtual)
+        missing = [name for name in efforts if name not in forces or np.isnan(forces[name]).any()]
+        laws = connection.laws(placement, motion) if missing else {}
+        for name, effort in efforts.items():
+            force = forces.get(name)
+            if name in missing:
+                unknown = np.ones(samples, dtype=bool) if force is None else np.isnan(force)
+                given = laws.get(name)
+                if given is None:
+                    # A direction that vanishes holds nothing.
+                    held.append(_spread(effort * unknown, numbers, rest.shape))
+                force = np.where(unknown, 0.0 if given is None else given, 0.0 if force is None else force)
             power = effort * force
             rest[numbers] -= power
             size[numbers] += np.abs(power)
-            unsure[numbers] += np.abs(effort) * known
         for line in connection.unanswered(placement, virtual):
             held.append(_spread(line, numbers, rest.shape))
         if connection.loads:
             load = connection.load(placement, motion, virtual)
             rest[numbers] -= load
             size[numbers] += np.abs(load)
-    return Balance(rest, size, _free(held), unsure)
+    return Balance(rest, size, _free(held))
 
 
 def _add_inertia(
@@ -184,34 +188,30 @@ def _add_inertia(
     motion: Motion,
     acceleration: Acceleration,
 ) -> None:
-    first, spin = freedoms.where[body.name]
-    for i, g in enumerate(gravity):
-        rest[first + i] += body.mass * (acceleration.linear[..., i] - g)
-        size[first + i] += body.mass * (np.abs(acceleration.linear[..., i]) + abs(g))
+    own, gain, pull = freedoms.moving(body.name), acceleration.linear.T, np.array(gravity)[:, None]
+    rest[own] += body.mass * (gain - pull)
+    size[own] += body.mass * (np.abs(gain) + np.abs(pull))
     if body.inertia is None:
         return
-    angular, twist = acceleration.angular, motion[body.name].spin
+    angular, twist, own = acceleration.angular, motion[body.name].spin, freedoms.turning(body.name)
     assert angular is not None, "a body with inertia has an angular acceleration"
     if freedoms.spins == 1:
-        rest[spin] += body.inertia * angular
-        size[spin] += np.abs(body.inertia * angular)
+        moment = body.inertia * angular
+        rest[own] += moment
+        size[own] += np.abs(moment)
         return
     rotation = placement[body.name].rotation
     assert rotation is not None, "the caller knows the attitude of what it balances"
     assert twist is not None, "a body with inertia has a spin"
     tensor = rotation @ body.inertia @ np.swapaxes(rotation, -1, -2)
-    terms = (
-        np.einsum("tij,tj->ti", tensor, angular),
-        cross(twist, np.einsum("tij,tj->ti", tensor, twist)),
-    )
-    for term in terms:
-        rest[spin : spin + 3] += term.T
+    gain, turning = (tensor @ np.stack([angular, twist], axis=-1)).transpose(2, 1, 0)
+    rest[own] += gain + cross(twist, turning.T).T
     # Vectors that are parallel leave a product of rounding's size.
     largest = np.abs(tensor).max(axis=(-1, -2))
-    size[spin : spin + 3] += largest * (np.abs(angular).max(axis=-1) + 6.0 * np.abs(twist).max(axis=-1) ** 2)
+    size[own] += largest * (np.abs(angular).max(axis=-1) + 6.0 * np.abs(twist).max(axis=-1) ** 2)
 
 
-def _spread(row: Numbers, numbers: list[int], shape: tuple[int, ...]) -> Numbers:
+def _spread(row: Numbers, numbers: list[int] | slice, shape: tuple[int, ...]) -> Numbers:
     found = np.zeros(shape)
     found[numbers] = row
     return found

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +29,7 @@ LEAST, LARGEST = 1e-100, 1e100
 """Sizes of numbers between which rates are formed by imaginary steps."""
 
 
-@dataclass(frozen=True)
-class Pose:
+class Pose(NamedTuple):
     """Where a body is.
 
     Attributes
@@ -48,8 +47,7 @@ class Pose:
     turn: Numbers | None = None
 
 
-@dataclass(frozen=True)
-class Twist:
+class Twist(NamedTuple):
     """How a body moves.
 
     Attributes

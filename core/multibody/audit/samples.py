@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,9 @@ Columns = Mapping[str, Column]
 
 POSITION, ATTITUDE, VELOCITY, SPIN = range(4)
 """Numbers of the stated errors of a body, of vectors of their length (m, rad, m/s, rad/s)."""
+
+_DIAGONAL = 3.0**0.5
+"""A vector is at most so many times as long as its largest component."""
 
 
 @dataclass(frozen=True)
@@ -67,23 +70,18 @@ class Samples:
         )
         return Samples(self.times[rows], placement, motion, forces, errors, force_errors, self.placed)
 
-    def followed_by(self, other: Samples) -> Samples:
-        """Return these samples and others of the same bodies after them."""
-        placement, motion = joined([(self.placement, self.motion), (other.placement, other.motion)])
-        unknown = (np.full(len(self.times), np.nan), np.full(len(other.times), np.nan))
-        forces, force_errors = (
-            {
-                name: np.concatenate([first.get(name, unknown[0]), then.get(name, unknown[1])])
-                for name in first.keys() | then.keys()
-            }
-            for first, then in ((self.forces, other.forces), (self.force_errors, other.force_errors))
-        )
-        errors = {name: np.concatenate([own, other.errors[name]]) for name, own in self.errors.items()}
-        times = np.concatenate([self.times, other.times])
-        return Samples(times, placement, motion, forces, errors, force_errors, self.placed)
+    def with_first_forces(self, given: Mapping[str, Numbers]) -> Samples:
+        """Return the samples with the forces of the first replaced by given ones of one sample, that have no error."""
+        forces, errors, rest = {}, {}, len(self.times) - 1
+        for name in self.forces.keys() | given.keys():
+            first, then = given.get(name, np.full(1, np.nan)), self.forces.get(name)
+            forces[name] = np.concatenate([first, np.full(rest, np.nan) if then is None else then[1:]])
+            errors[name] = np.zeros(rest + 1) if then is None else self.force_errors[name].copy()
+            errors[name][0] = 0.0
+        return replace(self, forces=forces, force_errors=errors)
 
     def flattened(self) -> Samples:
-        """Return perturbed samples with their two axes in one."""
+        """Return samples of which everything is perturbed with their two axes in one."""
 
         def flat(x: Numbers | None) -> Numbers | None:
             return None if x is None else x.reshape(-1, *x.shape[2:])
@@ -96,7 +94,8 @@ class Samples:
             name: Twist(flat(twist.velocity), flat(twist.spin))  # type: ignore[arg-type]
             for name, twist in self.motion.items()
         }
-        return Samples(self.times, placement, motion, self.forces, self.errors, self.force_errors)
+        forces = {name: values.reshape(-1) for name, values in self.forces.items()}
+        return Samples(self.times, placement, motion, forces, self.errors, self.force_errors)
 
     def of(self, bodies: Iterable[str]) -> Motion:
         """Return the motion of some bodies."""
@@ -191,70 +190,105 @@ def joined(parts: Sequence[tuple[Placement, Motion]]) -> tuple[Placement, Motion
     return placement, motion
 
 
-def samples_of(description: Description, times: Numbers, columns: Columns, rows: Numbers | slice) -> Samples:
-    """Return rows of the columns of an answer.
+@dataclass(frozen=True)
+class Part:
+    """Some rows of columns, with their times, shape (n,)."""
+
+    times: Numbers
+    columns: Columns
+    rows: Numbers | slice
+
+    def values(self, name: str) -> Numbers:
+        """Return the values of a column at the rows."""
+        return self.columns[name].values[self.rows]
+
+
+def samples_of(description: Description, parts: Sequence[Part]) -> Samples:
+    """Return samples of the columns of an answer, or of several with the same bodies, one after another.
 
     Raises
     ------
     KeyError
         Where the columns are not those of a trajectory.
     """
-    times = times[rows]
+    joined = _Joined(parts)
     placement, motion, errors = {}, {}, {}
     for name, body in description.bodies.items():
-        placement[name], motion[name], stated = _body(body, description, columns, rows)
-        errors[name] = np.repeat([stated], len(times), axis=0)
+        placement[name], motion[name], stated = _body(body, description, joined)
+        errors[name] = np.repeat(np.array(stated).T, joined.counts, axis=0)
     forces: dict[str, Numbers] = {}
     force_errors: dict[str, Numbers] = {}
-    for key, column in columns.items():
+    for key in dict.fromkeys(key for part in parts for key in part.columns):
+        column = next(part.columns[key] for part in parts if key in part.columns)
         if column.unit in ("N", "N m") and column.values.ndim == 1:
-            forces[key], force_errors[key] = column.values[rows], np.full(len(times), column.error)
-    placed = frozenset(name for name in placement if {f"{name}.attitude", f"{name}.axis"} & columns.keys())
-    return Samples(times, placement, motion, forces, errors, force_errors, placed)
+            forces[key], force_errors[key] = joined.force(key)
+    columns = parts[0].columns
+    placed = frozenset(name for name in placement if f"{name}.attitude" in columns or f"{name}.axis" in columns)
+    return Samples(joined.times, placement, motion, forces, errors, force_errors, placed)
 
 
-def _body(
-    body: RigidBody, description: Description, columns: Columns, rows: Numbers | slice
-) -> tuple[Pose, Twist, tuple[float, float, float, float]]:
-    """Return the samples of a body, and its stated errors."""
-    name = body.name
-    where, speed = columns[f"{name}.position"], columns[f"{name}.velocity"]
-    position, velocity = where.values[rows], speed.values[rows]
+class _Joined:
+    """The columns of several parts, one after another."""
+
+    def __init__(self, parts: Sequence[Part]) -> None:
+        self.parts, own = parts, [part.times for part in parts]
+        self.counts = [len(times) for times in own]
+        self.times: Numbers = own[0] if len(own) == 1 else np.concatenate(own)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.parts[0].columns
+
+    def column(self, name: str) -> tuple[Numbers, Numbers]:
+        """Return the values of a column, and its error in each of the parts."""
+        own = [part.values(name) for part in self.parts]
+        errors = np.array([part.columns[name].error for part in self.parts])
+        return own[0] if len(own) == 1 else np.concatenate(own), errors
+
+    def force(self, name: str) -> tuple[Numbers, Numbers]:
+        """Return the values of a force and its errors, NaN in the parts that do not have it."""
+        values, errors = [], []
+        for part, count in zip(self.parts, self.counts, strict=True):
+            column = part.columns.get(name)
+            values.append(np.full(count, np.nan) if column is None else column.values[part.rows])
+            errors.append(np.nan if column is None else column.error)
+        return np.concatenate(values), np.repeat(errors, self.counts)
+
+
+def _body(body: RigidBody, description: Description, of: _Joined) -> tuple[Pose, Twist, list[Numbers]]:
+    """Return the samples of a body, and its stated errors in each part: of place, attitude, velocity and spin."""
+    name, none = body.name, np.zeros(len(of.parts))
+    (position, away), (velocity, speed) = of.column(f"{name}.position"), of.column(f"{name}.velocity")
     if body.inertia is None:
-        return Pose(position), Twist(velocity), (where.error, 0.0, speed.error, 0.0)
+        return Pose(position), Twist(velocity), [away, none, speed, none]
     if description.dimension == 2:
-        angle, rate = columns[f"{name}.angle"], columns[f"{name}.angular_velocity"]
-        turn = angle.values[rows]
-        known = (where.error, angle.error, speed.error, rate.error)
-        return Pose(position, turned(turn), turn), Twist(velocity, rate.values[rows]), known
-    if f"{name}.attitude" in columns:
-        attitude, rate = columns[f"{name}.attitude"], columns[f"{name}.angular_velocity"]
-        rotation = rotation_of(attitude.values[rows])
-        spin = np.einsum("tij,tj->ti", rotation, rate.values[rows])
+        (turn, tilt), (rate, off) = of.column(f"{name}.angle"), of.column(f"{name}.angular_velocity")
+        return Pose(position, turned(turn), turn), Twist(velocity, rate), [away, tilt, speed, off]
+    if f"{name}.attitude" in of:
+        (attitude, tilt), (rate, off) = of.column(f"{name}.attitude"), of.column(f"{name}.angular_velocity")
+        rotation = rotation_of(attitude)
+        spin = (rotation @ rate[:, :, None])[:, :, 0]
         # A quaternion that is wrong by e turns by 2e; the spin, which is given in body axes, turns with it.
-        tilt = 2.0 * attitude.error
-        off = rate.error + tilt * float(np.max(np.linalg.norm(spin, axis=1), initial=0.0))
-        return Pose(position, rotation), Twist(velocity, spin), (where.error, tilt, speed.error, off)
-    if f"{name}.axis" in columns:
-        axis = columns[f"{name}.axis"]
-        rotation = _around(axis.values[rows], axis_of_top(body, description))
-        return Pose(position, rotation), Twist(velocity), (where.error, axis.error, speed.error, 0.0)
-    rate = columns[f"{name}.angular_velocity_in_space"]
+        off = off + 2.0 * tilt * float(np.abs(spin).max(initial=0.0)) * _DIAGONAL
+        return Pose(position, rotation), Twist(velocity, spin), [away, 2.0 * tilt, speed, off]
+    if f"{name}.axis" in of:
+        axis, tilt = of.column(f"{name}.axis")
+        rotation = _around(axis, axis_of_top(body, description))
+        return Pose(position, rotation), Twist(velocity), [away, tilt, speed, none]
+    rate, off = of.column(f"{name}.angular_velocity_in_space")
     # A ball with equal moments: its attitude is not answered, and its tensor is the same in all.
     still = np.broadcast_to(np.eye(3), (len(position), 3, 3))
-    known = (where.error, 0.0, speed.error, rate.error)
-    return Pose(position, still), Twist(velocity, rate.values[rows]), known
+    return Pose(position, still), Twist(velocity, rate), [away, none, speed, off]
 
 
 def rotation_of(quaternion: Numbers) -> Numbers:
     """Return the rotation of a unit quaternion (w, x, y, z), shape (n, 3, 3)."""
-    w, x, y, z = (quaternion[:, i] for i in range(4))
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    w, x, y, z = quaternion.T
+    found = np.empty((len(quaternion), 3, 3))
+    for i, (a, b, c) in enumerate(((x, y, z), (y, z, x), (z, x, y))):
+        j = (i + 1) % 3
+        found[:, i, i] = 1.0 - 2.0 * (b * b + c * c)
+        found[:, i, j], found[:, j, i] = 2.0 * (a * b - w * c), 2.0 * (a * b + w * c)
+    return found
 
 
 def axis_of_top(body: RigidBody, description: Description) -> int:

@@ -70,8 +70,8 @@ def accelerations_of(description: Description, answer: SceneSolution) -> dict[st
 
 
 def forces_of(answer: SceneSolution) -> dict[str, Numbers]:
-    """Return the forces at the start that are answered, as one sample."""
-    return {name: np.array([one.value]) for name, one in (answer.forces or {}).items() if one.value is not None}
+    """Return the forces at the start that are answered, as one sample; NaN where they are not determined."""
+    return {name: np.array([np.nan if one.value is None else one.value]) for name, one in (answer.forces or {}).items()}
 
 
 class AfterStart:
@@ -93,7 +93,9 @@ class AfterStart:
         turning = max(
             (float(np.abs(gain.angular).max()) for gain in gains.values() if gain.angular is not None), default=0.0
         )
-        self.rate = max(quickness(description, start), sqrt(turning), sqrt(self.steepest / size) if size > 0.0 else 0.0)
+        spins = [float(np.abs(twist.spin).max()) for twist in start.motion.values() if twist.spin is not None]
+        quick = quickness(description, start.placement, self.fastest, max(spins, default=0.0))
+        self.rate = max(quick, sqrt(turning), sqrt(self.steepest / size) if size > 0.0 else 0.0)
         # Without a rate of its own, in the time that it takes to gain its speed, or in any time.
         slow = self.fastest / self.steepest if self.fastest > 0.0 < self.steepest else 1.0
         self.step = SHORT_TIME * (1.0 / self.rate if self.rate > 0.0 else slow)

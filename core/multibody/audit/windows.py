@@ -11,7 +11,9 @@ L. N. Trefethen, "Approximation Theory and Approximation Practice", chapters 3, 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -19,8 +21,8 @@ from numpy.polynomial import chebyshev
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import NOISE, ROUNDING, Ledger
 from core.multibody.audit.newton import Acceleration, Freedoms
-from core.multibody.audit.placement import STEP, Numbers, Placement, Twist, cross
-from core.multibody.audit.samples import ATTITUDE, POSITION, SPIN, VELOCITY, Samples, axis_of_top
+from core.multibody.audit.placement import STEP, Numbers, Placement, cross
+from core.multibody.audit.samples import ATTITUDE, SPIN, Samples, axis_of_top
 
 NODES = 7
 """Samples of a window: with some seventh of a radian of motion in it, the eighth term is below 1e-12 of the first."""
@@ -28,21 +30,30 @@ NODES = 7
 SLOWEST = 0.05
 """Decay of the coefficients, two terms on, above which the terms that are left out are not known to be smaller."""
 
-_PLACES = np.cos((2 * np.arange(NODES) + 1) * np.pi / (2 * NODES))[::-1]
+GRID = 2.0**20
+"""Places of the samples in a window are multiples of its half width over this: their times are then doubles, and the
+weights are the same in all windows."""
+
+_ITSELF = np.eye(NODES, dtype=bool)
+_PLACES = np.round(GRID * np.cos((2 * np.arange(NODES) + 1) * np.pi / (2 * NODES))[::-1]) / GRID
 _COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(_PLACES, NODES - 1))
 """From values at the places to coefficients of Chebyshev polynomials."""
 
+
+def _weights() -> Numbers:
+    """Return the matrix from values at the places to the rates of the polynomial, by the barycentric formula."""
+    apart = np.where(_ITSELF, 1.0, _PLACES[:, None] - _PLACES)
+    weights = 1.0 / apart.prod(axis=1)
+    rates = np.where(_ITSELF, 0.0, weights / (weights[:, None] * apart))
+    found: Numbers = rates - np.where(_ITSELF, rates.sum(axis=1), 0.0)
+    return found
+
+
+_DIFFERENCES = _weights()
+_SIZES = np.abs(_DIFFERENCES).sum(axis=1)[:, None]
 _STEEPEST = float(NODES**2)
 """Largest rate of the first term that is left out."""
-_ITSELF = np.eye(NODES, dtype=bool)
-
-
-@dataclass(frozen=True)
-class Rate:
-    """The rate of a quantity at the samples of a window, and how wrong it may be, shapes (n, ...) and (n,)."""
-
-    value: Numbers
-    error: Numbers
+_LEAST = float(np.finfo(float).tiny)
 
 
 def nodes(middle: float, half: float) -> Numbers:
@@ -50,67 +61,53 @@ def nodes(middle: float, half: float) -> Numbers:
     return middle + half * _PLACES
 
 
-class Window:
-    """Forms rates from samples at the times of a window.
+class Windows:
+    """Forms rates from samples in windows.
 
     Parameters
     ----------
-    times : ndarray, shape (NODES,)
-        Doubles: where the zeros of the polynomial have been rounded to.
-    half : float
-        Half of the width (s).
+    halves : sequence of float
+        Half of the width of each (s).
     rounding : float
         Share of themselves to which samples are known apart from stated errors.
     """
 
-    def __init__(self, times: Numbers, half: float, rounding: float = ROUNDING) -> None:
-        self.half, self.rounding = half, rounding
-        places = (times - (times[0] + times[-1]) / 2.0) / half
-        self.away = places - _PLACES
-        # The weights of the barycentric formula give those of the rate.
-        apart = np.where(_ITSELF, 1.0, places[:, None] - places)
-        weights = 1.0 / apart.prod(axis=1)
-        rates = np.where(_ITSELF, 0.0, weights / (weights[:, None] * apart))
-        self.differences = (rates - np.where(_ITSELF, rates.sum(axis=1), 0.0)) / half
-        self.weights = np.abs(self.differences).sum(axis=1)
+    def __init__(self, halves: Sequence[float], rounding: float = ROUNDING) -> None:
+        self.half, self.rounding = np.array(halves)[:, None, None], rounding
 
     def rates(self, values: Numbers, starts: Numbers, errors: Numbers) -> tuple[Numbers, Numbers]:
-        """Return the rates of several quantities, shape (NODES, components), and their errors, (NODES, quantities).
+        """Return the rates of several quantities, shape (n, components), and their errors, (n, quantities).
 
         Parameters
         ----------
-        values : ndarray, shape (NODES, components)
+        values : ndarray, shape (n, components)
+            At the samples of all windows, one after another.
         starts : ndarray of int, shape (quantities,)
             The first component of every quantity.
         errors : ndarray, shape (quantities,)
         """
-        found = self.differences @ values
-        # To first order the values at the zeros themselves.
-        coefficients = _COEFFICIENTS @ (values - (self.half * self.away)[:, None] * found)
-        terms = np.sqrt(np.add.reduceat(coefficients**2, starts, axis=1))
-        noise = errors + self.rounding * np.maximum.reduceat(np.abs(values).max(axis=0), starts)
+        parted = values.reshape(len(self.half), NODES, -1)
+        found = _DIFFERENCES @ parted / self.half
+        terms = np.sqrt(np.add.reduceat((_COEFFICIENTS @ parted) ** 2, starts, axis=2))
+        noise = errors + self.rounding * np.maximum.reduceat(np.abs(parted).max(axis=1, keepdims=True), starts, axis=2)
         seen = np.maximum(terms, noise)
         # The slowest decay from one coefficient to the next of its parity, down to where they are noise.
-        ratios = seen[3:] / np.maximum(seen[1:-2], np.finfo(float).tiny)
-        decay = ratios.max(axis=0, where=seen[3:] > 2.0 * noise, initial=0.0)
-        last = 4.0 * SLOWEST * _STEEPEST * np.maximum(terms[-1], terms[-2]) / self.half
-        return found, self.weights[:, None] * noise + np.where(decay <= SLOWEST, last, np.inf)
-
-    def rate(self, values: Numbers, error: float) -> Rate:
-        """Return the rate of a quantity from its samples, shape (NODES, ...), with an error."""
-        found, known = self.rates(values.reshape(NODES, -1), np.zeros(1, dtype=int), np.array([error]))
-        return Rate(found.reshape(values.shape), known[:, 0])
+        ratios = seen[:, 3:] / np.maximum(seen[:, 1:-2], _LEAST)
+        decay = ratios.max(axis=1, where=seen[:, 3:] > 2.0 * noise, initial=0.0)
+        last = 4.0 * SLOWEST * _STEEPEST * np.maximum(terms[:, -1], terms[:, -2])
+        known = (_SIZES * noise + np.where(decay <= SLOWEST, last, np.inf)[:, None]) / self.half
+        return found.reshape(values.shape), known.reshape(len(values), -1)
 
 
 @dataclass(frozen=True)
 class _Quantity:
-    """One quantity of a body in a window.
+    """One quantity of a body in windows.
 
     Attributes
     ----------
-    values : ndarray, shape (NODES, k)
+    values : ndarray, shape (n, k)
     error : float
-    expected : ndarray, shape (NODES, k), or None
+    expected : ndarray, shape (n, k), or None
         Its rate, where the answer has it: that of places.
     known : float
         Error of that rate.
@@ -126,71 +123,72 @@ class _Quantity:
 
 @dataclass(frozen=True)
 class Gains:
-    """Accelerations in a window, and how wrong the equations of motion may be for them.
+    """Accelerations in windows, and how wrong the equations of motion may be for them.
 
     Attributes
     ----------
     accelerations : mapping of str to Acceleration
     spins : mapping of str to ndarray
         Of tops: their angular velocities, of which the answer has the axis alone.
-    unsure : ndarray, shape (freedoms, NODES)
+    unsure : ndarray, shape (freedoms, n)
     """
 
     accelerations: dict[str, Acceleration]
-    spins: dict[str, Twist]
+    spins: dict[str, Numbers]
     unsure: Numbers
 
 
-def check_window(
+def check_windows(
     ledger: Ledger,
     description: Description,
     freedoms: Freedoms,
     samples: Samples,
     ahead: Placement,
-    half: float,
+    halves: Sequence[float],
     extent: float,
 ) -> Gains:
-    """Compare rates with velocities in a window, and return the accelerations in it.
+    """Compare rates with velocities in windows, and return the accelerations in them.
 
     Parameters
     ----------
+    samples : Samples
+        Those of all windows, one after another.
     ahead : mapping of str to Pose
         The placement moved by an imaginary step along the motion.
-    half : float
-        Half of the width (s).
+    halves : sequence of float
+        Half of the width of each (s).
     extent : float
         Size of the scene (m).
     """
-    window = Window(samples.times, half, ledger.rounding)
+    windows = Windows(halves, ledger.rounding)
     places, speeds = _quantities(samples, ahead)
     every = [*places, *speeds]
-    widths = [one.values.shape[1] for one in every]
-    starts = np.concatenate([[0], np.cumsum(widths[:-1])])
+    starts = np.array([0, *accumulate(one.values.shape[1] for one in every[:-1])])
     values = np.concatenate([one.values for one in every], axis=1)
-    found, errors = window.rates(values, starts, np.array([one.error for one in every]))
+    found, errors = windows.rates(values, starts, np.array([one.error for one in every]))
     _check_kinematics(ledger, samples, places, starts, found, errors)
-    rates = (speeds, starts[len(places) :], found, errors[:, len(places) :])
-    return _gains(description, freedoms, samples, window, rates, extent)
+    return _gains(description, freedoms, samples, windows, (speeds, starts, found, errors, len(places)), extent)
 
 
 def _quantities(samples: Samples, ahead: Placement) -> tuple[list[_Quantity], list[_Quantity]]:
     """Return places and attitudes, whose rates the answer has, and velocities and spins."""
     places: list[_Quantity] = []
     speeds: list[_Quantity] = []
-    for name, pose in ahead.items():
-        twist, error = samples.motion[name], samples.errors[name][0]
-        own = [("velocity", pose.position, error[POSITION], error[VELOCITY])]
+    count = len(samples.times)
+    for name, pose in samples.placement.items():
+        twist, (position, attitude, velocity, spinning) = samples.motion[name], samples.errors[name][0].tolist()
+        law, spin = "rate of place is spin", None if twist.spin is None else twist.spin.reshape(count, -1)
+        places.append(_Quantity("rate of place is velocity", name, pose.position, position, twist.velocity, velocity))
+        speeds.append(_Quantity("velocity", name, twist.velocity, velocity))
+        if spin is None:
+            continue
+        speeds.append(_Quantity("spin", name, spin, spinning))
+        turned = ahead[name].rotation
         if pose.turn is not None:
-            own.append(("spin", pose.turn[:, None], error[ATTITUDE], error[SPIN]))
-        elif pose.rotation is not None and twist.spin is not None and name in samples.placed:
-            own.append(("spin", pose.rotation.reshape(NODES, 9), 2.0 * error[ATTITUDE], error[SPIN]))
-        places.extend(
-            _Quantity(f"rate of place is {law}", name, at.real, known, at.imag / STEP, rate)
-            for law, at, known, rate in own
-        )
-        speeds.append(_Quantity("velocity", name, twist.velocity, error[VELOCITY]))
-        if twist.spin is not None:
-            speeds.append(_Quantity("spin", name, twist.spin.reshape(NODES, -1), error[SPIN]))
+            places.append(_Quantity(law, name, pose.turn[:, None], attitude, spin, spinning))
+        elif turned is not None and name in samples.placed:
+            axes = turned.reshape(count, 9)
+            places.append(_Quantity(law, name, axes.real, 2.0 * attitude, axes.imag / STEP, spinning))
     return places, speeds
 
 
@@ -203,7 +201,10 @@ def _check_kinematics(
     size = np.maximum.reduceat(np.abs(expected), own, axis=1)
     allowed = errors[:, : len(places)] + np.array([one.known for one in places]) + ledger.rounding * size
     ledger.checked += 1
-    for k in np.flatnonzero(~(off <= allowed).all(axis=0)).tolist():
+    within = off <= allowed
+    if within.all():
+        return
+    for k in np.flatnonzero(~within.all(axis=0)).tolist():
         ledger.compare(places[k].law, places[k].body, samples.times, off[:, k], allowed[:, k])
 
 
@@ -211,45 +212,41 @@ def _gains(
     description: Description,
     freedoms: Freedoms,
     samples: Samples,
-    window: Window,
-    rates: tuple[list[_Quantity], Numbers, Numbers, Numbers],
+    windows: Windows,
+    rates: tuple[list[_Quantity], Numbers, Numbers, Numbers, int],
     extent: float,
 ) -> Gains:
-    speeds, starts, found, errors = rates
+    speeds, starts, found, errors, first = rates
     linear: dict[str, Numbers] = {}
     angular: dict[str, Numbers] = {}
-    spins: dict[str, Twist] = {}
-    unsure = np.zeros((freedoms.count, NODES))
-    for k, one in enumerate(speeds):
+    spins: dict[str, Numbers] = {}
+    unsure = np.empty((freedoms.count, len(samples.times)))
+    for k, one in enumerate(speeds, start=first):
         name, body, gain = one.body, description.bodies[one.body], found[:, starts[k] : starts[k] + one.values.shape[1]]
-        first, spin_at = freedoms.where[name]
         if one.law == "velocity":
             linear[name] = gain
-            unsure[first : first + description.dimension] = body.mass * errors[:, k]
+            unsure[freedoms.moving(name)] = body.mass * errors[:, k]
             continue
-        assert body.inertia is not None, "what spins has inertia"
-        angular[name] = gain.reshape(one.values.shape) if freedoms.spins == 3 else gain[:, 0]
+        angular[name] = gain if freedoms.spins == 3 else gain[:, 0]
         speed, error = float(np.abs(one.values).max()), samples.errors[name][0]
         off = errors[:, k] + 4.0 * speed * (error[SPIN] + speed * error[ATTITUDE])
-        unsure[spin_at : spin_at + freedoms.spins] = float(np.abs(body.inertia).max()) * off
+        unsure[freedoms.turning(name)] = body.moment * off
     for name, body in description.bodies.items():
         if body.inertia is None or name in angular:
             continue
-        spin, gained = _of_top(description, samples, name, window)
-        angular[name], spins[name] = gained.value, Twist(samples.motion[name].velocity, spin.value)
-        speed, spin_at = float(np.abs(spin.value).max()), freedoms.where[name][1]
-        off = gained.error + 4.0 * speed * spin.error
-        unsure[spin_at : spin_at + 3] = float(np.abs(body.inertia).max()) * off
+        spins[name], angular[name], off = _of_top(description, samples, name, windows)
+        unsure[freedoms.turning(name)] = body.moment * off
     heaviest = max(body.mass for body in description.bodies.values())
-    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-        # Of windows and bodies near the ends of the doubles nothing is known.
-        noise = NOISE * np.float64(heaviest) * extent * max(1.0, extent) / window.half / window.half
-    unsure += noise if np.isfinite(noise) else np.inf
+    # Of windows and bodies near the ends of the doubles nothing is known.
+    noise = NOISE * heaviest * extent * max(1.0, extent) / windows.half[:, 0, 0] / windows.half[:, 0, 0]
+    unsure += np.repeat(np.where(np.isfinite(noise), noise, np.inf), NODES)
     return Gains({name: Acceleration(one, angular.get(name)) for name, one in linear.items()}, spins, unsure)
 
 
-def _of_top(description: Description, samples: Samples, name: str, window: Window) -> tuple[Rate, Rate]:
-    """Return spin and angular acceleration of a symmetric top in space, whose axis alone is answered.
+def _of_top(
+    description: Description, samples: Samples, name: str, windows: Windows
+) -> tuple[Numbers, Numbers, Numbers]:
+    """Return spin, angular acceleration and how wrong its rate is, of a top in space, whose axis alone is answered.
 
     The component of the spin along the axis n is that of the start, for nothing turns it about its axis:
     w = n x n' + w_n n and w' = n x n'' + w_n n'.
@@ -258,9 +255,11 @@ def _of_top(description: Description, samples: Samples, name: str, window: Windo
     k = axis_of_top(body, description)
     about = 0.0 if body.angular_velocity is None else float(body.angular_velocity[k])
     assert pose.rotation is not None, "a top has an axis"
-    n = pose.rotation[:, :, k]
-    first = window.rate(n, error)
-    second = window.rate(first.value, float(np.max(first.error)))
-    spin = Rate(cross(n, first.value) + about * n, first.error + abs(about) * error)
-    off = second.error + abs(about) * first.error + error * float(np.max(np.abs(second.value)))
-    return spin, Rate(cross(n, second.value) + about * first.value, off)
+    n, whole = pose.rotation[:, :, k], np.zeros(1, dtype=int)
+    first, known = windows.rates(n, whole, np.array([error]))
+    largest = known.reshape(-1, NODES, 1).max(axis=1, keepdims=True)
+    second, gained = windows.rates(first, whole, largest)
+    spin = cross(n, first) + about * n
+    off = gained + abs(about) * known + error * np.abs(second).max()
+    off += 4.0 * np.abs(spin).max() * (known + abs(about) * error)
+    return spin, cross(n, second) + about * first, off[:, 0]

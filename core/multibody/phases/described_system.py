@@ -109,9 +109,11 @@ class DescribedSystem:
         end = motion.phases[-1].end
         return not arb(time) > (arb(motion.ended.time) if end is None else end)
 
-    def sampled(self, times: Floats) -> dict[str, Column]:
-        """Return places, rates and forces at some times; without forces where they are not known."""
+    def sampled(self, times: Floats, forces: bool = True) -> dict[str, Column]:
+        """Return places, rates and, if wanted, forces at some times; without forces where they are not known."""
         with np.errstate(over="ignore", invalid="ignore"):
+            if not forces:
+                return replace(self.columns, outputs=PLACES_AND_FORCES[:1]).at(times)
             try:
                 return replace(self.columns, outputs=PLACES_AND_FORCES).at(times)
             except AccuracyUnreachable:

@@ -36,7 +36,7 @@ class Audited:
 
     scene: Scene
     answer: SceneSolution
-    sampler: Callable[[Any], Columns]
+    sampler: Callable[[Any, bool], Columns]
     times: Any
 
     def failure(self) -> Failure | None:
@@ -48,7 +48,7 @@ class Audited:
         motion = self.answer.trajectory
         assert motion is not None
         answer = replace(self.answer, trajectory=replace(motion, columns=change(motion.columns)))
-        return replace(self, answer=answer, sampler=lambda times: change(self.sampler(times)))
+        return replace(self, answer=answer, sampler=lambda times, forces: change(self.sampler(times, forces)))
 
 
 def description_of(name: str) -> dict[str, Any]:
@@ -160,11 +160,11 @@ def _later(self: Audited, shift: Callable[[Any], Any]) -> Audited:
     """Return an answer whose motion is that of other times."""
     motion = self.answer.trajectory
     assert motion is not None
-    trajectory = replace(motion, columns=self.sampler(shift(motion.time)))
+    trajectory = replace(motion, columns=self.sampler(shift(motion.time), True))
     return replace(
         self,
         answer=replace(self.answer, trajectory=trajectory),
-        sampler=lambda times: self.sampler(shift(np.asarray(times))),
+        sampler=lambda times, forces: self.sampler(shift(np.asarray(times)), forces),
     )
 
 
