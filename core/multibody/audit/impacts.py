@@ -114,6 +114,10 @@ class Impacts:
         }
         reach = min((one.reach for one in description.connections if one.reach > 0.0), default=1.0)
         tilt = max(float(one[0, ATTITUDE] + one[0, POSITION] / reach) for one in rows.errors.values())
+        spun = max((float(np.abs(twist.spin).max()) for twist in rows.motion.values() if twist.spin is not None),
+                   default=0.0)  # fmt: skip
+        # Attitudes are extrapolated up to the cube of the angle between samples.
+        tilt += (spun * self.step) ** 3
         momenta = sum(
             body.mass * unsure[name][0] + _largest(body.inertia) * unsure[name][1]
             for name, body in description.bodies.items()
@@ -124,7 +128,7 @@ class Impacts:
         self._check_energy(ledger, description, rows, (before, after), events)
         arm = max((one.arm + one.reach for one in description.connections), default=0.0)
         speed = sum(velocity + arm * spin for velocity, spin in unsure.values())
-        fastest = max(float(np.abs(twist.velocity).max()) for twist in rows.motion.values())
+        fastest = max(float(np.abs(twist.velocity).max()) for twist in rows.motion.values()) + arm * spun
         self._check_restitution(ledger, description, (before, after), events, speed + (KNOWN + tilt) * fastest)
 
     def _check_energy(

@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.multibody.solve import solve_scene
 from core.systems.trajectory import MotionEvent
+from tests.core.multibody import contact_judge
 from tests.core.multibody.audit.spoiled import Audited, another, answered, description_of
+from tests.core.multibody.worked_examples import read
 
 STRUCK = ("dumbbell-dropped", "ball-on-ball-dropped", "spinning-disc-bounces", "cradle-of-two", "weight-lands")
 TIMES = np.linspace(0.0, 2.0, 5)
@@ -67,3 +70,10 @@ def test_another_restitution_is_refused() -> None:
     failure = Audited(one.scene, wrong.answer, wrong.sampler, one.times).failure()
     assert failure is not None
     assert failure.law == "restitution"
+
+
+@pytest.mark.parametrize("seed", [265, 560, 6443])
+def test_bodies_that_spin_quickly_after_an_impact_pass(seed: int) -> None:
+    # Their attitudes turn between the samples by more than the size of the scene and its speed say.
+    horizon = float(np.random.default_rng(seed).choice([0.5, 2.0, 10.0]))
+    solve_scene(read(contact_judge.any_scene(seed)), np.linspace(0.0, horizon, 21), accuracy=1e-6)
