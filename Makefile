@@ -56,9 +56,7 @@ judge: environment
 	$(BIN)/python -m tests.core.multibody.contact_judge 10000
 	$(BIN)/python -m tests.core.multibody.audit.judge 20000
 	$(BIN)/python -m tests.core.multibody.relations.judge 20000
-	$(BIN)/python -m tests.oracles.plain_engine.comparison.run 3000 0
-	$(BIN)/python -m tests.oracles.plain_engine.comparison.run 1000 10000 plain_engine_other_kinds.json
-	$(BIN)/python -m tests.oracles.plain_engine.comparison.run 1000 20000 plain_engine_soon_after.json
+	$(BIN)/python -m tests.oracles.plain_engine.comparison.run 5000 0
 	$(BIN)/python -m tests.oracles.plain_engine.comparison.run catalogue
 
 plans: environment

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from core.multibody.audit.bodies import Reader
-from core.multibody.audit.placement import STEP, Placement, Pose, Twist
+from core.multibody.audit.placement import Placement, Pose, Twist, cross, turned
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class State:
-    """Places and rates of all bodies.
+    """Places and rates of all bodies; places may have leading axes.
 
     Attributes
     ----------
@@ -38,9 +38,7 @@ class Coordinates:
 
     Attributes
     ----------
-    dimension, width : int
-        Of a position; number of rates of a rigid body.
-    alive : ndarray of bool, shape (b, width)
+    alive : ndarray of bool, shape (b, 3) in the plane, (b, 6) in space
         Which rates the bodies have.
     size : int
         Number n of rates.
@@ -49,22 +47,21 @@ class Coordinates:
     def __init__(self, reader: Reader) -> None:
         self.names, self.bodies = list(reader.bodies), list(reader.bodies.values())
         self.dimension = d = reader.dimension
-        turns = 1 if d == 2 else 3
-        self.width = d + turns
+        self.flat = d == 2
         self.rigid = [body.inertia is not None for body in self.bodies]
-        self.alive = np.ones((len(self.bodies), self.width), dtype=bool)
+        self.alive = np.ones((len(self.bodies), 3 if self.flat else 6), dtype=bool)
         self.alive[np.logical_not(self.rigid), d:] = False
         self.size = int(self.alive.sum())
         self.masses = np.array([body.mass for body in self.bodies])
-        none = np.zeros((turns, turns))
+        none = np.zeros((1, 1) if self.flat else (3, 3))
         self.inertias = np.array(
-            [np.reshape(none if x.inertia is None else x.inertia, none.shape) for x in self.bodies]
+            [none if x.inertia is None else np.reshape(x.inertia, none.shape) for x in self.bodies]
         )
 
     def start(self) -> State:
         """Return the places as they are described, and no rates."""
         starts = [body.start for body in self.bodies]
-        if self.dimension == 2:
+        if self.flat:
             turn = np.array([0.0 if x.turn is None else float(x.turn) for x in starts])
         else:
             turn = np.array([np.eye(3) if x.rotation is None else x.rotation for x in starts])
@@ -75,80 +72,57 @@ class Coordinates:
         full = np.zeros((*rates.shape[:-1], *self.alive.shape))
         full[..., self.alive] = rates
         spins = full[..., self.dimension :]
-        return full[..., : self.dimension], spins[..., 0] if self.dimension == 2 else spins
+        return full[..., : self.dimension], spins[..., 0] if self.flat else spins
 
     def motion(self, rates: Floats) -> dict[str, Twist]:
         """Return rates by body."""
-        velocity, spin = (np.moveaxis(x, rates.ndim - 1, 0) for x in self.spread(rates))
+        velocity, spin = self.spread(rates)
         return {
-            name: Twist(velocity[i], spin[i] if rigid else None)
+            name: Twist(velocity[..., i, :], None if not rigid else spin[..., i] if self.flat else spin[..., i, :])
             for i, (name, rigid) in enumerate(zip(self.names, self.rigid, strict=True))
         }
 
-    def placement(self, state: State, rates: Floats | None = None, by: Floats | None = None) -> Placement:
-        """Return the placement, or many: moved along rates by finite times, and by an imaginary step beside.
-
-        Parameters
-        ----------
-        rates : ndarray, shape (k, n)
-        by : ndarray, shape (k,)
-            Times by which the places move along the rates (s).
-        """
-        position, turn = state.position[None], state.turn[None]
-        if rates is not None and by is not None:
-            velocity, spin = self.spread(rates)
-            position = position + (by + 1j * STEP)[:, None, None] * velocity
-            if self.dimension == 2:
-                turn = turn + (by + 1j * STEP)[:, None] * spin
-            else:
-                turn = rotations_by(by[:, None, None] * spin) @ turn
-                turn = turn + 1j * STEP * (skew(spin) @ turn)
-        rotation = turn
-        if self.dimension == 2:
-            c, s = np.cos(turn), np.sin(turn)
-            rotation = np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
-        if rates is None:
-            position, rotation, turn = position[0], rotation[0], turn[0]
-        flat = self.dimension == 2
+    def placement(self, state: State) -> Placement:
+        """Return the places by body."""
+        rotation = turned(state.turn) if self.flat else state.turn
         return {
             name: Pose(
-                position[..., i, :],
-                rotation[..., i, :, :] if self.rigid[i] else None,
-                turn[..., i] if flat and self.rigid[i] else None,
+                state.position[..., i, :],
+                rotation[..., i, :, :] if rigid else None,
+                state.turn[..., i] if rigid and self.flat else None,
             )
-            for i, name in enumerate(self.names)
+            for i, (name, rigid) in enumerate(zip(self.names, self.rigid, strict=True))
         }
 
     def advanced(self, state: State, change: Floats) -> State:
-        """Return the state with its places moved by small changes, of shape (n,)."""
+        """Return the state with its places moved by changes, of shape (..., n)."""
         move, angle = self.spread(change)
-        turn = state.turn + angle if self.dimension == 2 else rotations_by(angle) @ state.turn
+        turn = state.turn + angle if self.flat else rotations_by(angle) @ state.turn
         return State(state.position + move, turn, state.rates)
-
-    def _tensors(self, state: State) -> Floats:
-        if self.dimension == 2:
-            return self.inertias
-        found: Floats = state.turn @ self.inertias @ np.swapaxes(state.turn, -1, -2)
-        return found
 
     def inertia(self, state: State) -> Floats:
         """Return the mass matrix, shape (n, n)."""
-        b, d = len(self.bodies), self.dimension
-        full = np.zeros((b, self.width, b, self.width))
-        each = np.arange(b)
+        b, d, width = len(self.bodies), self.dimension, self.alive.shape[1]
+        full, each = np.zeros((b, width, b, width)), np.arange(b)
         full[each, :d, each, :d] = self.masses[:, None, None] * np.eye(d)
         full[each, d:, each, d:] = self._tensors(state)
         alive = self.alive.ravel()
-        return full.reshape(b * self.width, -1)[np.ix_(alive, alive)]
+        return full.reshape(b * width, -1)[np.ix_(alive, alive)]
 
     def weights(self, state: State, gravity: Floats) -> Floats:
         """Return the forces of gravity, and in space the moments -w x J w of turning bodies, shape (n,)."""
         full = np.zeros(self.alive.shape)
         full[:, : self.dimension] = self.masses[:, None] * gravity
-        if self.dimension == 3:
+        if not self.flat:
             _, spin = self.spread(state.rates)
-            full[:, 3:] = -np.cross(spin, (self._tensors(state) @ spin[..., None])[..., 0])
+            full[:, 3:] = -cross(spin, (self._tensors(state) @ spin[..., None])[..., 0])
         return full[self.alive]
+
+    def _tensors(self, state: State) -> Floats:
+        if self.flat:
+            return self.inertias
+        found: Floats = state.turn @ self.inertias @ np.swapaxes(state.turn, -1, -2)
+        return found
 
     def pack(self, state: State) -> Floats:
         """Return a state as one vector."""
@@ -157,24 +131,18 @@ class Coordinates:
     def unpack(self, vector: Floats) -> State:
         """Return the state that a vector holds, with the rotations that are nearest to its matrices."""
         b, d = len(self.bodies), self.dimension
-        position, turn = vector[: b * d].reshape(b, d), vector[b * d : len(vector) - self.size]
-        if d == 3:
+        position, turn, rates = np.split(vector, [b * d, len(vector) - self.size])
+        if not self.flat:
             u, _, vt = np.linalg.svd(turn.reshape(b, 3, 3))
             turn = u @ vt
-        return State(position, turn, vector[len(vector) - self.size :])
+        return State(position.reshape(b, d), turn, rates)
 
     def flow(self, state: State, accelerations: Floats) -> Floats:
         """Return the rate of a packed state."""
         velocity, spin = self.spread(state.rates)
-        return self.pack(State(velocity, spin if self.dimension == 2 else skew(spin) @ state.turn, accelerations))
-
-
-def skew(v: Floats) -> Floats:
-    """Return the matrices of vector products, shape (..., 3, 3)."""
-    found = np.zeros((*v.shape, 3))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[..., i, j], found[..., j, i] = -v[..., k], v[..., k]
-    return found
+        axes = np.swapaxes(state.turn, -1, -2) if not self.flat else state.turn
+        turn = spin if self.flat else np.swapaxes(cross(spin[:, None, :], axes), -1, -2)
+        return self.pack(State(velocity, turn, accelerations))
 
 
 def rotations_by(vector: Floats) -> Floats:

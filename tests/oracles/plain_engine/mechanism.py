@@ -7,18 +7,17 @@ places that are moved along it by finite times: to some 1e-13 of the terms.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from core.multibody.audit.bodies import Reader
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
-from core.multibody.audit.definition import Definition
+from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.laws import Pull
-from core.multibody.audit.placement import STEP, Motion, Numbers, Placement
+from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, moved, rate, with_rate
 from core.multibody.audit.strings import ChainDefinition, Straight, StringDefinition
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 
@@ -28,10 +27,11 @@ _WEIGHTS = np.array([-1 / 280, 4 / 105, -1 / 5, 4 / 5, -4 / 5, 1 / 5, -4 / 105, 
 REACH = 2.0**-7
 """Part of the shortest length and of a radian by which the innermost places of the stencil are moved: the truncated
 term is some 1e-15 of the rates, and rounding some 1e-14."""
-
-
-MOST_SPENT = 5000
+MOST_SPENT = 20000
 """Evaluations of the accelerations that one motion may take: steps that small mean a singular place or a fast body."""
+
+Owner = tuple[str, int]
+"""What a row belongs to: ("held", number of the definition), ("push", number of the measure) or ("slip", the same)."""
 
 
 class NotSupported(Exception):
@@ -64,19 +64,21 @@ class OneSided:
         Of its force, by which its definition knows it.
     slips : int
         Components of its slip: 0 without friction, 1 in the plane, 3 in space.
+    order : float or None
+        When it acts among impacts at one instant.
+    closes, opens, sticks : str
+        Its events.
     """
 
     name: str
     key: str
     definition: Definition
-    static: float
-    kinetic: float
-    restitution: float
+    touch: Touch
     slips: int
+    order: float | None
     closes: str
     opens: str
-    rolls: bool
-    order: float | None = None
+    sticks: str
 
 
 @dataclass(frozen=True)
@@ -85,31 +87,37 @@ class Rows:
 
     Attributes
     ----------
+    owners : list of Owner
     lines : ndarray, shape (m, n)
     values : ndarray, shape (m,)
         Of the measures (m, rad); zero of what holds rates alone.
-    rates : ndarray, shape (m,)
-        The forms at the present rates, less what is driven.
-    gains : ndarray, shape (m,)
-    driven : ndarray, shape (m,)
-        The forms without any motion.
+    rates, gains, driven : ndarray, shape (m,)
+        The forms at the present rates, what these gain, and the forms without any motion.
     """
 
+    owners: list[Owner]
     lines: Floats
     values: Floats
     rates: Floats
     gains: Floats
     driven: Floats
 
+    def of(self, what: str, number: int) -> list[int]:
+        """Return where the rows of an owner are."""
+        return [k for k, owner in enumerate(self.owners) if owner == (what, number)]
+
+    def after(self, restitution: Mapping[int, float]) -> Floats:
+        """Return the gains of an impact: none of what holds, the rates of slips and gaps, 1 + e times if they close."""
+        factors = [
+            0.0 if what == "held" else 1.0 + restitution[i] if what == "push" and rate < 0.0 else 1.0
+            for (what, i), rate in zip(self.owners, self.rates, strict=True)
+        ]
+        found: Floats = np.array(factors) * self.rates
+        return found
+
 
 class Mechanism:
-    """A scene as definitions, in maximal coordinates.
-
-    Raises
-    ------
-    NotSupported
-        For kinds without a definition.
-    """
+    """A scene as definitions, in maximal coordinates."""
 
     def __init__(self, reader: Reader, definitions: Iterable[Definition]) -> None:
         self.coordinates = Coordinates(reader)
@@ -118,31 +126,16 @@ class Mechanism:
         self.spent = 0
         placement = self.coordinates.placement(self.coordinates.start())
         still = self.coordinates.motion(np.zeros(self.coordinates.size))
-        self.holding = [one for one in self.definitions if one.held(placement)]
-        self.rolling = [one for one in self.definitions if one.held_rates(placement, still)]
-        self.rolling_rows = sum(_width(x) for one in self.rolling for x in one.held_rates(placement, still).values())
-        """Rows that hold rates alone."""
         self.one_sided = [entry for one in self.definitions for entry in _one_sided(one, placement, still, reader)]
-        self.acting = [one for one in self.definitions if _acts(one)]
         self.chains = [one for one in self.definitions if isinstance(one, ChainDefinition)]
-        self.every_straight = [
-            part
+        self.straights = [
+            (run.name, part, len(run.parts) > 1 or run.parts[0].senses != (0, 0))
             for one in self.definitions
             if isinstance(one, StringDefinition)
             for run in one.runs
             for part in run.parts
         ]
         self.shortest_rod = min([1.0, *(one.length for one in self.definitions if isinstance(one, RodDefinition))])
-        self.pulls = [one for one in self.definitions if isinstance(one, Pull)]
-        self.straights = [
-            (run.name, part)
-            for one in self.definitions
-            if isinstance(one, StringDefinition)
-            for run in one.runs
-            if len(run.parts) > 1 or run.parts[0].senses != (0, 0)
-            for part in run.parts
-            if part.a.place.body is not None or part.b.place.body is not None
-        ]
 
     def spend(self, evaluations: int = 1) -> None:
         """Count evaluations of accelerations, and give up where there are too many."""
@@ -150,70 +143,67 @@ class Mechanism:
         if self.spent > MOST_SPENT:
             raise NotSupported("more evaluations than one motion may take")
 
-    def rows(self, state: State, normals: Iterable[OneSided] = (), slips: Iterable[OneSided] = ()) -> Rows:
-        """Return the rows of everything that holds, then of closed gaps, then of slips that are wanted."""
-        normals, slips = list(normals), list(slips)
-        coordinates, u = self.coordinates, state.rates
-        n = coordinates.size
-        velocity, spin = coordinates.spread(u)
-        fastest = max(float(np.max(np.abs(velocity), initial=0.0)), float(np.max(np.abs(spin), initial=0.0)))
+    def rows(self, state: State, closed: Iterable[int] = (), slipping: Iterable[int] = ()) -> Rows:
+        """Return the rows of everything that holds, of gaps that are closed, and of slips that are wanted."""
+        coordinates, u, n = self.coordinates, state.rates, self.coordinates.size
+        fastest = float(np.abs(u).max(initial=0.0))
         h = REACH * self._shortest(state) / fastest if fastest > 0.0 else 1.0
         motions = np.concatenate([np.eye(n), np.zeros((1, n)), np.tile(u, (9, 1))])
         times = np.concatenate([np.zeros(n + 2), h * _STENCIL])
-        placements = coordinates.placement(state, motions, times)
-        found = []
-        for one in self.holding:
-            found.extend(one.held(placements).values())
-        found.extend(entry.definition.gaps(placements)[entry.key] for entry in normals)
-        held = _columns(found, n + 10)
-        rates, values = held.imag / STEP, held.real[n + 1]
-        if self.rolling or slips:
-            real = {
-                name: type(pose)(*(None if x is None else x.real for x in (pose.position, pose.rotation, pose.turn)))
-                for name, pose in placements.items()
-            }
-            motion = coordinates.motion(motions)
-            turned: list[Numbers] = []
-            for one in self.rolling:
-                turned.extend(one.held_rates(real, motion).values())
-            turned.extend(entry.definition.slips(real, motion)[entry.key] for entry in slips)
-            more = _columns(turned, n + 10).real
-            rates = np.concatenate([rates, more], axis=1)
-            values = np.concatenate([values, np.zeros(more.shape[1])])
+        motion = coordinates.motion(motions)
+        placement = coordinates.placement(coordinates.advanced(state, times[:, None] * motions))
+        moving = moved(placement, motion)
+        one_sided = self.one_sided
+        found = [(("held", k), x) for k, one in enumerate(self.definitions) for x in one.held(moving).values()]
+        found += [(("push", i), one_sided[i].definition.gaps(moving)[one_sided[i].key]) for i in closed]
+        owners, held = _columns(found, n + 10)
+        found = [
+            (("held", k), x)
+            for k, one in enumerate(self.definitions)
+            for x in one.held_rates(placement, motion).values()
+        ]
+        found += [(("slip", i), one_sided[i].definition.slips(placement, motion)[one_sided[i].key]) for i in slipping]
+        others, turned = _columns(found, n + 10)
+        rates = np.concatenate([held.imag / STEP, turned.real], axis=1)
         driven = rates[n]
-        lines = (rates[:n] - driven).T
-        return Rows(lines, values, rates[n + 1], (_WEIGHTS @ rates[n + 2 :]) / h, driven)
+        return Rows(
+            owners + others,
+            (rates[:n] - driven).T,
+            np.concatenate([held.real[n + 1], np.zeros(len(others))]),
+            rates[n + 1],
+            (_WEIGHTS @ rates[n + 2 :]) / h,
+            driven,
+        )
 
-    def gains_of_gaps(self, state: State, gaps: Sequence[OneSided], accelerations: Floats) -> Floats:
+    def rough(self, numbers: Iterable[int]) -> list[int]:
+        """Return those of some measures that have friction."""
+        return [i for i in numbers if self.one_sided[i].slips]
+
+    def gains_of_gaps(self, state: State, numbers: Sequence[int], accelerations: Floats) -> Floats:
         """Return the second derivatives of gaps, shape (k,)."""
-        rows = self.rows(state, gaps)
+        rows = self.rows(state, numbers)
         found: Floats = rows.lines @ accelerations + rows.gains
-        end = len(found) - self.rolling_rows
-        return found[end - len(gaps) : end]
+        return found[[rows.of("push", i)[0] for i in numbers]]
 
     def _shortest(self, state: State) -> float:
         """Return the length (m) of the shortest rod or straight part, whose direction turns most for a move."""
-        found = self.shortest_rod
-        if self.every_straight:
-            placement = self.coordinates.placement(state)
-            found = min(found, *(float(np.real(_span(part, placement))) for part in self.every_straight))
-        return max(found, 1e-6)
+        placement = self.coordinates.placement(state)
+        return max(min([self.shortest_rod, *(float(_span(part, placement)) for _, part, _ in self.straights)]), 1e-6)
 
     def loads(self, state: State) -> Floats:
         """Return the forces that places and rates alone give, shape (n,)."""
         coordinates = self.coordinates
+        placement, motion = coordinates.placement(state), coordinates.motion(state.rates)
+        virtual = coordinates.motion(np.eye(coordinates.size))
         total = coordinates.weights(state, self.gravity)
-        if self.acting or self.chains:
-            placement, motion = coordinates.placement(state), coordinates.motion(state.rates)
-            virtual = coordinates.motion(np.eye(coordinates.size))
-            for one in self.acting:
-                values = one.laws(placement, motion)
-                efforts = one.efforts(placement, virtual) if values else {}
-                for name, value in values.items():
-                    total = total + value * efforts[name]
-                total = total + one.load(placement, motion, virtual)
-            for chain in self.chains:
-                total = total - self._gradient(state, chain.potential)
+        for one in self.definitions:
+            values = one.laws(placement, motion)
+            efforts = one.efforts(placement, virtual) if values else {}
+            for name, value in values.items():
+                total = total + value * efforts[name]
+            total = total + one.load(placement, motion, virtual)
+        for chain in self.chains:
+            total = total - self._gradient(state, chain.potential)
         return total
 
     def inertia(self, state: State) -> Floats:
@@ -221,30 +211,44 @@ class Mechanism:
         found = self.coordinates.inertia(state)
         for chain in self.chains:
             line = self._gradient(state, lambda placement, chain=chain: chain.sides(placement)[0])  # type: ignore[misc]
-            found = found + chain.density * chain.length * np.outer(line, line)
+            found = found + chain.mass * np.outer(line, line)
+        return found
+
+    def own_force(self, chain: ChainDefinition, state: State, accelerations: Floats) -> Floats:
+        """Return what the weight and the inertia of a chain do to the bodies at its ends, shape (n,).
+
+        Its sides are straight and change with places linearly: they gain nothing by themselves.
+        """
+        line = self._gradient(state, lambda placement: chain.sides(placement)[0])
+        found: Floats = -self._gradient(state, chain.potential) - chain.mass * line * (line @ accelerations)
         return found
 
     def gap_rates(self, state: State) -> tuple[Floats, Floats]:
         """Return all gaps and their rates, shape (k,) each."""
-        placements = self.coordinates.placement(state, state.rates[None], np.zeros(1))
-        pairs = [entry.definition.gaps(placements)[entry.key].reshape(-1)[0] for entry in self.one_sided]
-        both = np.array(pairs, dtype=complex)
-        return both.real, both.imag / STEP
+        coordinates = self.coordinates
+        moving = moved(coordinates.placement(state), coordinates.motion(state.rates))
+        gaps = np.array([one.definition.gaps(moving)[one.key] for one in self.one_sided], dtype=complex)
+        return gaps.real, gaps.imag / STEP
 
     def spans(self, state: State) -> list[tuple[str, float, float]]:
         """Return the lengths that have to stay positive, with their rates.
 
         They are those of straight parts of strings beside drums or pegs, and of what pulls along a line.
         """
-        placement = self.coordinates.placement(state, state.rates[None], np.zeros(1))
-        found = [(name, _span(part, placement)) for name, part in self.straights]
-        found += [(one.name, one.distance(placement)) for one in self.pulls]
-        return [(name, float(x.real[0]), float(x.imag[0]) / STEP) for name, x in found]
+        placement, motion = self.coordinates.placement(state), self.coordinates.motion(state.rates)
+        moves = [
+            (name, part) for name, part, bent in self.straights if bent and (part.a.place.body or part.b.place.body)
+        ]
+        found = [(name, with_rate(lambda x, part=part: _span(part, x), placement, motion)) for name, part in moves]  # type: ignore[misc]
+        pulls = [one for one in self.definitions if isinstance(one, Pull)]
+        found += [(one.name, with_rate(one.distance, placement, motion)) for one in pulls]
+        return [(name, float(length), float(change)) for name, (length, change) in found]
 
-    def _gradient(self, state: State, measure: Callable[[Placement], Numbers]) -> Floats:
+    def _gradient(self, state: State, measure: Measure) -> Floats:
         n = self.coordinates.size
-        found = measure(self.coordinates.placement(state, np.eye(n), np.zeros(n)))
-        return np.broadcast_to(np.imag(found) / STEP, (n,))
+        return np.broadcast_to(
+            rate(measure, self.coordinates.placement(state), self.coordinates.motion(np.eye(n))), (n,)
+        )
 
 
 def _span(part: Straight, placement: Placement) -> Numbers:
@@ -252,58 +256,33 @@ def _span(part: Straight, placement: Placement) -> Numbers:
     return np.sqrt((d * d).sum(axis=-1) - part.offset**2)
 
 
-def _width(value: Numbers) -> int:
-    return 1 if np.ndim(value) == 0 else int(np.shape(value)[-1])
+def _columns(found: list[tuple[Owner, Numbers]], count: int) -> tuple[list[Owner], Numbers]:
+    """Return measures as columns, and whose each is."""
+    parts = [np.broadcast_to(x, (count, *np.shape(x)[1:])).reshape(count, -1) for _, x in found]
+    owners = [owner for (owner, _), part in zip(found, parts, strict=True) for _ in range(part.shape[1])]
+    return owners, np.concatenate([np.zeros((count, 0)), *parts], axis=1)
 
 
-def _columns(found: list[Numbers], count: int) -> Any:
-    if not found:
-        return np.zeros((count, 0), dtype=complex)
-    parts = [np.broadcast_to(x, (count, *x.shape[1:])) if np.ndim(x) else np.full(count, x) for x in found]
-    return np.concatenate([x.reshape(count, -1) for x in parts], axis=1)
-
-
-def _acts(one: Definition) -> bool:
-    kind = type(one)
-    return kind.laws is not Definition.laws or kind.load is not Definition.load
-
-
-def _one_sided(one: Any, placement: Placement, still: Motion, reader: Reader) -> list[OneSided]:
-    found = []
+def _one_sided(one: Definition, placement: Placement, still: Motion, reader: Reader) -> Iterator[OneSided]:
+    """Yield the measures of a connection that stay at or above zero."""
+    closes, opens, rolls = "touch", "lift-off", False
+    if isinstance(one, StringDefinition):
+        closes, opens = "taut", "slack"
+    elif isinstance(one, Stop):
+        closes, opens = "stop", "release"
+    elif isinstance(one, OnFace):
+        rolls = one.radius > 0.0
+    elif isinstance(one, OnRound):
+        rims = zip((one.round.a, one.round.b), one.round.radii, strict=True)
+        rolls = any(place.body is not None and radius > 0.0 for place, radius in rims)
+    connections = dict(zip(reader.scene.names(), reader.scene.connections, strict=True))
     for key in one.gaps(placement):
-        touch = one.touch
-        closes, opens, rolls = "touch", "lift-off", False
-        if isinstance(one, StringDefinition):
-            closes, opens = "taut", "slack"
-        elif isinstance(one, Stop):
-            closes, opens = "stop", "release"
-        elif isinstance(one, OnFace):
-            rolls = one.radius > 0.0
-        elif isinstance(one, OnRound):
-            rims = zip((one.round.a, one.round.b), one.round.radii, strict=True)
-            rolls = any(place.body is not None and radius > 0.0 for place, radius in rims)
-        slip = one.slips(placement, still).get(key)
-        width = 0 if slip is None else _width(slip)
+        touch = one.coefficients
+        assert touch is not None, "what is one-sided has coefficients"
         name = key.rsplit(".", 1)[0]
-        order = getattr(reader.scene.connections[_number(reader, name)], "order", None)
-        found.append(
-            OneSided(
-                name,
-                key,
-                one,
-                touch.static,
-                touch.kinetic,
-                touch.restitution,
-                width,
-                closes,
-                opens,
-                rolls,
-                None if order is None else reader.number(order, ("connections", "order")),
-            )
-        )
-    return found
-
-
-def _number(reader: Reader, name: str) -> int:
-    names: Mapping[str, int] = {one: i for i, one in enumerate(reader.scene.names())}
-    return names[name] if name in names else names[name.rsplit(".", 1)[0]]
+        slip = one.slips(placement, still).get(key)
+        connection = connections[name] if name in connections else connections[name.rsplit(".", 1)[0]]
+        order = getattr(connection, "order", None)
+        when = None if order is None else reader.number(order, ("connections", "order"))
+        width = 0 if slip is None else np.size(slip)
+        yield OneSided(name, key, one, touch, width, when, closes, opens, "roll" if rolls else "stick")

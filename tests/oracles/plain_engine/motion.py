@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 
@@ -15,12 +14,15 @@ from tests.oracles.plain_engine.coordinates import Floats, State
 from tests.oracles.plain_engine.decisions import decide
 from tests.oracles.plain_engine.impacts import impact
 from tests.oracles.plain_engine.mechanism import Mechanism, NotSupported, Undecided
-from tests.oracles.plain_engine.phase import OPEN, Conditions, Inconsistent, Kind, Mode, Phase
-from tests.oracles.plain_engine.readouts import forces_of
+from tests.oracles.plain_engine.modes import OPEN, Kind
+from tests.oracles.plain_engine.phase import Inconsistent, Key, Phase
+from tests.oracles.plain_engine.readouts import forces_of, of_chains
 from tests.oracles.plain_engine.start import TOUCHING, start
 from tests.oracles.plain_engine.steps import Crossing, Stepper
 
 MOST_EVENTS = 300
+AT_ONCE = 60
+"""Impacts at one instant after which there is no end of them."""
 SHORT = 1e-4
 """Length (m) at which one vanishes soon, in a time that its rate tells."""
 SETTLED = 1e-5
@@ -34,13 +36,7 @@ APPROACHES = 1e-9
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happens.
-
-    Attributes
-    ----------
-    error : float
-        Of the time, where it is known to be less exact than the motion (s).
-    """
+    """Something that happens; its time may be known less exactly than the motion, by an error (s)."""
 
     kind: str
     name: str
@@ -60,6 +56,8 @@ class Motion:
         At the times asked for that are reached.
     forces : dict of float to dict
         Of connections by name (N, N m), those that are determined.
+    accelerations : ndarray or None
+        At the start.
     """
 
     mechanism: Mechanism
@@ -68,22 +66,6 @@ class Motion:
     states: dict[float, State] = field(default_factory=dict)
     forces: dict[float, dict[str, float]] = field(default_factory=dict)
     accelerations: Floats | None = None
-    weight: float = 0.0
-    modes: list[list[str]] = field(default_factory=list)
-
-
-def mechanism_of(scene: Scene) -> Mechanism:
-    """Return a scene in maximal coordinates.
-
-    Raises
-    ------
-    NotSupported
-        For kinds without a definition.
-    """
-    found = description_of(scene)
-    if found.undefined:
-        raise NotSupported("; ".join(sorted(set(found.undefined.values()))))
-    return Mechanism(Reader(scene), found.connections)
 
 
 def follow(
@@ -105,7 +87,10 @@ def follow(
     NotSupported
         By the name of what is not.
     """
-    mechanism = mechanism_of(scene)
+    found = description_of(scene)
+    if found.undefined:
+        raise NotSupported("; ".join(sorted(set(found.undefined.values()))))
+    mechanism = Mechanism(Reader(scene), found.connections)
     mechanism.gravity = mechanism.gravity * heavier
     return _Run(mechanism, sorted(times), tolerance, faster).go()
 
@@ -115,12 +100,9 @@ class _Run:
         self.mechanism, self.times, self.tolerance = mechanism, times, tolerance
         self.motion = Motion(mechanism)
         self.state, self.touching = start(mechanism, faster)
-        still = mechanism.coordinates.start()
-        weights = mechanism.coordinates.weights(still, mechanism.gravity)
-        self.motion.weight = float(np.abs(weights).max(initial=0.0))
         self.now = 0.0
-        self.modes: list[Mode] | None = None
-        self.fastest = float(np.abs(self.state.rates).max(initial=0.0))
+        self.phase: Phase | None = None
+        self.fastest = 0.0
         self.bounces: dict[int, int] = {}
 
     def go(self) -> Motion:
@@ -132,8 +114,8 @@ class _Run:
                     self._collide()
                     phase = decide(self.mechanism, self.state, self.touching, self._probe, self.fastest)
                     self._tell(phase)
-                    self.state = Stepper(phase, self.tolerance).project(self.state)
-                    self._sample(phase, self.now, self.state)
+                    self.phase, self.state = phase, Stepper(phase, self.tolerance).project(self.state)
+                    self._sample(phase)
                     if self.now >= end or not self._advance(phase, end):
                         return self.motion
         except Undecided as problem:
@@ -146,93 +128,91 @@ class _Run:
     def _probe(self, phase: Phase, state: State, time: float) -> State:
         return Stepper(phase, 1e-11).to(state, 0.0, time)
 
+    def _happens(self, kind: str, number: int, after: float = 0.0, error: float = 0.0) -> None:
+        name = self.mechanism.one_sided[number].name
+        self.motion.events.append(Event(kind, name, self.now + after, error))
+
     def _collide(self) -> None:
         every = self.mechanism.one_sided
         self.fastest = max(self.fastest, float(np.abs(self.state.rates).max(initial=0.0)))
-        for _ in range(60):
+        for _ in range(AT_ONCE):
             _, rates = self.mechanism.gap_rates(self.state)
             hit = [i for i in self.touching if rates[i] < -APPROACHES * max(self.fastest, 1e-9)]
             if not hit:
                 return
-            restitution = {i: every[i].restitution for i in self.touching}
             settling = {i: left for i in hit if (left := self._settling(i, rates)) is not None}
-            restitution.update(dict.fromkeys(settling, 0.0))
-            outcome = impact(self.mechanism, self.state, self.touching, restitution)
-            self.state = replace(self.state, rates=self.state.rates + outcome.change)
+            restitution = {i: 0.0 if i in settling else every[i].touch.restitution for i in self.touching}
+            outcome = impact(self.mechanism, self.state, restitution)
+            self.state = replace(self.state, rates=outcome.rates)
             for i, left in settling.items():
-                self.motion.events.append(Event("settle", every[i].name, self.now + left, 0.1 * left))
-            largest = max((push for push, _ in outcome.impulses.values()), default=0.0)
-            for i, (push, _) in sorted(outcome.impulses.items(), key=lambda x: (x[0] not in hit, x[0])):
-                if push > 1e-9 * largest and i not in settling:
-                    self.motion.events.append(Event(every[i].closes, every[i].name, self.now))
+                self._happens("settle", i, left, 0.1 * left)
+            largest = max(outcome.pushes.values(), default=0.0)
+            for i in sorted(outcome.pushes, key=lambda x: (x not in hit, x)):
+                if outcome.pushes[i] > APPROACHES * largest and i not in settling:
+                    self._happens(every[i].closes, i)
             self.bounces.update((i, self.bounces.get(i, 0) + 1) for i in hit)
         raise Undecided("no-progress")
 
     def _settling(self, i: int, rates: Floats) -> float | None:
         """Return the time in which the bounces of one contact come to rest; None where that is not at hand."""
-        one = self.mechanism.one_sided[i]
-        e = one.restitution
-        if self.bounces.get(i, 0) < LISTED or not 0.0 < e < 1.0 or -rates[i] > SETTLED * self.fastest:
+        e = self.mechanism.one_sided[i].touch.restitution
+        if self.phase is None or self.bounces.get(i, 0) < LISTED or not 0.0 < e < 1.0:
             return None
-        free = Phase(self.mechanism, [OPEN if k == i else mode for k, mode in enumerate(self.modes or [])])
-        falls = -self.mechanism.gains_of_gaps(self.state, [one], free.solve(self.state).accelerations)[0]
-        return None if falls <= 0.0 else 2.0 * e * -float(rates[i]) / (falls * (1.0 - e))
+        free = Phase(self.mechanism, [OPEN if k == i else mode for k, mode in enumerate(self.phase.modes)])
+        falls = -self.mechanism.gains_of_gaps(self.state, [i], free.solve(self.state).accelerations)[0]
+        settles = falls > 0.0 and -rates[i] <= SETTLED * self.fastest
+        return 2.0 * e * -float(rates[i]) / (falls * (1.0 - e)) if settles else None
 
     def _tell(self, phase: Phase) -> None:
         """Add the events of what changes its state."""
-        every = self.mechanism.one_sided
-        if self.modes is not None:
-            for one, old, new in zip(every, self.modes, phase.modes, strict=True):
-                if old.kind is Kind.OPEN or (old.kind is new.kind and (len(old.along) != 1 or old.along == new.along)):
-                    continue
-                kind = one.opens if new.kind is Kind.OPEN else "slip"
-                if new.kind is Kind.STICK:
-                    kind = "roll" if one.rolls else "stick"
-                self.motion.events.append(Event(kind, one.name, self.now))
-        if self.modes is not None and [x.kind for x in self.modes] != [x.kind for x in phase.modes]:
+        before = self.phase.modes if self.phase else phase.modes
+        for i, (old, new) in enumerate(zip(before, phase.modes, strict=True)):
+            turns = old.kind is new.kind and len(old.along) == 1 and old.along != new.along
+            if old.kind is not Kind.OPEN and (old.kind is not new.kind or turns):
+                one = self.mechanism.one_sided[i]
+                self._happens({Kind.OPEN: one.opens, Kind.STICK: one.sticks}.get(new.kind, "slip"), i)
+        if [mode.kind for mode in before] != [mode.kind for mode in phase.modes]:
             self.bounces = {}
-        self.modes = phase.modes
-        self.motion.modes.append([mode.shown for mode in phase.modes])
 
-    def _sample(self, phase: Phase, time: float, state: State) -> None:
+    def _sample(self, phase: Phase) -> None:
         if self.motion.accelerations is None:
-            self.motion.accelerations = phase.solve(state).accelerations
-        if time in self.times and time not in self.motion.states:
-            self.motion.states[time] = state
-            self.motion.forces[time] = forces_of(phase, state)
-
-    def _figures(self, phase: Phase, state: State) -> dict[tuple[str, int], float]:
-        """Return what has to stay at or above zero in a phase."""
-        gaps, _ = self.mechanism.gap_rates(state)
-        opened = {i for i, mode in enumerate(phase.modes) if mode.kind is Kind.OPEN}
-        found = {("gap", i): float(gaps[i]) for i in opened}
-        if phase.closed:
-            solution = phase.solve(state)
-            conditions = Conditions(phase, solution)
-            found.update(conditions.determined)
-            if conditions.share is not None:
-                found["share", -1] = conditions.share
-            for i, slip in solution.slips.items():
-                found["slip", i] = float(phase.along[i] @ slip) / max(self.fastest, 1e-9)
-        slack = {self.mechanism.one_sided[i].name for i in opened}
-        spans = enumerate(self.mechanism.spans(state))
-        return found | {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
+            self.motion.accelerations = phase.solve(self.state).accelerations
+        if self.now in self.times and self.now not in self.motion.states:
+            self.motion.states[self.now] = self.state
+            self.motion.forces[self.now] = forces_of(phase, self.state)
 
     def _advance(self, phase: Phase, end: float) -> bool:
         """Go to the next event; return whether there is one."""
+
+        def figures(state: State) -> dict[Key, float]:
+            """Return what has to stay at or above zero."""
+            gaps, _ = self.mechanism.gap_rates(state)
+            opened = {i for i in range(len(gaps)) if i not in phase.closed}
+            found = {("gap", i): float(gaps[i]) for i in opened} | of_chains(phase, state)
+            if phase.closed:
+                solution = phase.solve(state)
+                found |= phase.conditions(solution, phase.closed)
+                fastest = max(self.fastest, 1e-9)
+                found |= {("slip", i): float(phase.along[i] @ slip) / fastest for i, slip in solution.slips.items()}
+            slack = {self.mechanism.one_sided[i].name for i in opened}
+            spans = enumerate(self.mechanism.spans(state))
+            return found | {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
+
         stepper = Stepper(phase, self.tolerance)
-        figures = partial(self._figures, phase)
         for found in stepper.until(self.state, self.now, end, figures, self.times, self._first(phase)):
             if not isinstance(found, Crossing):
                 self.now, self.state = found
-                self._sample(phase, self.now, self.state)
+                self._sample(phase)
                 continue
             self.now, self.state = found.time, found.state
             kind, i = found.key
             if found.grazes:
                 raise Undecided("grazing-contact", [self.mechanism.one_sided[i].name])
+            if kind in ("lift-off", "end-of-chain"):
+                self.motion.ended = Event(kind, self.mechanism.chains[i].name, self.now)
+                return False
             if kind == "span":
-                self.motion.ended = self._vanished(phase, i)
+                self.motion.ended = self._vanished(stepper, i)
                 return False
             gaps, _ = self.mechanism.gap_rates(self.state)
             met = [k for k, gap in enumerate(gaps) if gap < TOUCHING]
@@ -240,11 +220,11 @@ class _Run:
             return True
         return False
 
-    def _vanished(self, phase: Phase, number: int) -> Event:
+    def _vanished(self, stepper: Stepper, number: int) -> Event:
         """Return when a length is zero that is short: a power of the time left, which f f''/f'^2 tells."""
         name, span, rate = self.mechanism.spans(self.state)[number]
         step = 1e-3 * span / abs(rate)
-        _, _, then = self.mechanism.spans(Stepper(phase, self.tolerance).to(self.state, 0.0, step))[number]
+        _, _, then = self.mechanism.spans(stepper.to(self.state, 0.0, step))[number]
         power = 1.0 / (1.0 - span * (then - rate) / step / rate**2)
         left = power * span / abs(rate)
         return Event("singular", name, self.now + left, 1e-3 * left)
@@ -252,9 +232,6 @@ class _Run:
     def _first(self, phase: Phase) -> float | None:
         """Return a first step within which what has just bounced comes back, if anything does soon."""
         gaps, rates = self.mechanism.gap_rates(self.state)
-        near = [i for i, mode in enumerate(phase.modes) if mode.kind is Kind.OPEN and abs(gaps[i]) < TOUCHING]
-        fast = [float(rates[i]) for i in near if rates[i] > 0.0]
-        if not fast:
-            return None
+        fast = [r for i, r in enumerate(rates) if i not in phase.closed and abs(gaps[i]) < TOUCHING and r > 0.0]
         fall = max(float(np.abs(phase.solve(self.state).accelerations).max(initial=0.0)), 1e-9)
-        return max(2.0 * min(fast) / fall, 1e-9)
+        return max(2.0 * min(fast) / fall, 1e-9) if fast else None

@@ -19,7 +19,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 from tests.oracles.plain_engine.mechanism import NotSupported
-from tests.oracles.plain_engine.phase import Inconsistent, Phase
+from tests.oracles.plain_engine.phase import Inconsistent, Key, Phase
 from tests.oracles.plain_engine.start import projected
 
 INSIDE = (0.0625, 0.25, 0.5, 0.75, 1.0)
@@ -33,7 +33,6 @@ NO_FORCE = 1e-10
 GRAZES = 1e-9
 """Share of a gap's own size to which it is known whether it reaches zero where it turns back."""
 
-Key = tuple[str, int]
 Figures = Callable[[State], dict[Key, float]]
 """What has to stay at or above zero, by kind and number."""
 

@@ -203,6 +203,8 @@ def _samples(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
     trajectory = solution.trajectory
     assert trajectory is not None
     events = [event.time for event in first.events]
+    mechanism = first.mechanism
+    weights = mechanism.coordinates.weights(mechanism.coordinates.start(), mechanism.gravity)
     for k, time in enumerate(trajectory.time):
         t = float(time)
         if t > until or t not in first.states or t not in moved.states or any(abs(t - x) < 1e-6 for x in events):
@@ -225,7 +227,7 @@ def _samples(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
                 )
                 return
         forces, others = first.forces[t], moved.forces[t]
-        largest = max([abs(x) for x in forces.values()] + [first.weight])
+        largest = max([abs(x) for x in forces.values()] + [float(np.abs(weights).max(initial=0.0))])
         for name, force in forces.items():
             column = trajectory.columns.get(name)
             if column is None or name not in others:

@@ -21,6 +21,14 @@ DIRECTIONS = (
     ("1/2", "sqrt(3)/2", "pi/3"),
 )
 """Cosine, sine and angle: 37, 53, 0, 90, 30, 45 and 60 degrees."""
+BEYOND = (
+    ("-0.8", "0.6", "pi - atan(3/4)"),
+    ("-0.6", "0.8", "pi - atan(4/3)"),
+    ("-1", "0", "pi"),
+    ("-sqrt(1/2)", "sqrt(1/2)", "3*pi/4"),
+    ("-1/2", "sqrt(3)/2", "2*pi/3"),
+)
+"""The same of obtuse angles: 143, 127, 180, 135 and 120 degrees."""
 MASSES = (0.5, 1, 1, 1, 2, 3)
 SPEEDS = (0, 0, 0, 0.5, 1, 2, 3, -1, -2)
 COEFFICIENTS = (0, 0.1, 0.2, 0.3, 0.5, 0.75)
@@ -68,8 +76,15 @@ class Draw:
 
     def direction(self) -> tuple[str, str, str]:
         """Return cosine, sine and angle of a direction, as formulas."""
-        c, s, angle = self.one(DIRECTIONS)
-        return (c, s, angle) if self.chance(0.5) else (c, f"-({s})", f"-({angle})")
+        return self._either_way(self.one(DIRECTIONS))
+
+    def turned(self) -> tuple[str, str, str]:
+        """Return cosine, sine and angle of a direction, in a quarter of all cases at an obtuse angle."""
+        return self._either_way(self.one(BEYOND)) if self.chance(0.25) else self.direction()
+
+    def _either_way(self, direction: tuple[str, str, str]) -> tuple[str, str, str]:
+        c, s, angle = direction
+        return direction if self.chance(0.5) else (c, f"-({s})", f"-({angle})")
 
     def rough(self) -> Json:
         """Return friction and restitution of a contact, each in half of all cases."""

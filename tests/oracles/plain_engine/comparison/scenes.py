@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from typing import Any
 
 import numpy as np
 
@@ -15,46 +15,51 @@ from tests.oracles.plain_engine.motion import follow
 
 ENDS = (0.3, 0.5, 0.8)
 """Last times asked for (s)."""
-OTHER = 10_000
-"""Seed from which on scenes are drawn from the units of other kinds, too."""
-SOON_AFTER = 20_000
-"""Seed from which on the last time is soon after the first event."""
 APART = 5.0
 """How far units stand from one another (m)."""
+HOLDS = ("pin", "rod", "track", "weld", "slider", "ball-joint", "rolling")
+"""Kinds of which a second one between the same places changes nothing."""
+PLANE = (*units_in_plane.UNITS, *units_of_other_kinds.PLANE)
+SPACE = (*units_in_space.UNITS, *units_of_other_kinds.SPACE)
 
 
 def scene_of(seed: int) -> tuple[Json, list[float]]:
     """Return the scene of a seed, and the times asked for."""
-    random = np.random.default_rng([2024, seed])
+    random = np.random.default_rng([2026, seed])
     draw = Draw(random, "", 0.0)
     space = draw.chance(0.3)
-    kinds: Any = units_in_space.UNITS if space else units_in_plane.UNITS
-    if seed >= OTHER:
-        kinds = (*kinds, *(2 * (units_of_other_kinds.SPACE if space else units_of_other_kinds.PLANE)))
-    first = draw.one(kinds)
-    start = random.bit_generator.state
-    units: list[Unit] = [first(Draw(random, "", 0.0))]
-    if draw.chance(0.25):
-        # Twins: the same figures again, further on.
-        twin = np.random.default_rng()
-        twin.bit_generator.state = start
-        units.append(first(Draw(twin, "2", APART)))
-    elif draw.chance(0.6):
-        units.append(draw.one(kinds)(Draw(random, "2", APART)))
+    kinds = SPACE if space else PLANE
+    units = _twins(draw, draw.one(kinds)) if draw.chance(0.25) else _side_by_side(draw, kinds)
     g = draw.one((9.81, 10))
     scene: Json = {"gravity": [0, 0, -g] if space else [0, -g], "bodies": {}, "connections": []}
     for unit in units:
         scene["bodies"] |= unit.bodies
         scene["connections"] += unit.connections
-    if len(units) == 2 and draw.chance(0.5):
-        scene["connections"].append(_tie(draw, units))
-    if not space and draw.chance(0.04):
-        scene["connections"].append({"kind": "spinning-frame", "rate": draw.one((1, 2)), "about": "normal"})
-    if space and draw.chance(0.1):
-        scene["connections"].append({"kind": "spinning-frame", "rate": draw.one((1, 2))})
+    for _ in units[1:]:
+        if draw.chance(0.5):
+            scene["connections"] += _tie(draw, units)
+    holding = [one for one in scene["connections"] if one["kind"] in HOLDS]
+    if holding and draw.chance(0.15):
+        scene["connections"].append({**draw.one(holding), "name": "again"})
+    # What a frame does to a chain is not modelled.
+    if draw.chance(0.06) and not any(one["kind"] == "chain" for one in scene["connections"]):
+        frame = {"kind": "spinning-frame", "rate": draw.one((1, 2))}
+        scene["connections"].append(frame if space else {**frame, "about": "normal"})
     end = draw.one(ENDS)
     times = [0.0, round(end * 0.45, 4), end]
-    return scene, times if seed < SOON_AFTER else _until_soon_after(scene, times)
+    return scene, _until_soon_after(scene, times) if draw.chance(0.2) else times
+
+
+def _twins(draw: Draw, kind: Callable[[Draw], Unit]) -> list[Unit]:
+    """Return the same figures twice, side by side."""
+    twin = np.random.default_rng()
+    twin.bit_generator.state = draw.random.bit_generator.state
+    return [kind(Draw(draw.random, "", 0.0)), kind(Draw(twin, "2", APART))]
+
+
+def _side_by_side(draw: Draw, kinds: Sequence[Callable[[Draw], Unit]]) -> list[Unit]:
+    count = draw.one((1, 1, 2, 2, 2, 2, 3))
+    return [draw.one(kinds)(Draw(draw.random, str(i + 1) if i else "", APART * i)) for i in range(count)]
 
 
 def _until_soon_after(scene: Json, times: list[float]) -> list[float]:
@@ -66,8 +71,12 @@ def _until_soon_after(scene: Json, times: list[float]) -> list[float]:
     return times
 
 
-def _tie(draw: Draw, units: list[Unit]) -> Json:
-    """Return what ties two units: nothing that holds, so that their velocities stay possible."""
+def _tie(draw: Draw, units: list[Unit]) -> list[Json]:
+    """Return what ties two units that may be tied: nothing that holds, so that their velocities stay possible."""
+    first = int(draw.random.integers(len(units) - 1))
+    units = units[first : first + 2]
+    if not all(unit.ends for unit in units):
+        return []
     a, b = (draw.one(unit.ends) for unit in units)
     kind = draw.one(("spring", "spring", "damper", "gravitation", "inverse-square", "string"))
     if kind == "string" and any("radius" in unit.bodies.get(end, {}) for unit, end in zip(units, (a, b), strict=True)):
@@ -75,11 +84,11 @@ def _tie(draw: Draw, units: list[Unit]) -> Json:
         kind = "spring"
     if kind == "spring":
         tie: Json = {"kind": "spring", "a": a, "b": b, "stiffness": draw.one((1, 5, 20))}
-        return tie if draw.chance(0.5) else {**tie, "rest_length": draw.one((4, 0))}
+        return [tie if draw.chance(0.5) else {**tie, "rest_length": draw.one((4, 0))}]
     if kind == "damper":
-        return {"kind": "damper", "a": a, "b": b, "coefficient": draw.one((0.5, 2))}
+        return [{"kind": "damper", "a": a, "b": b, "coefficient": draw.one((0.5, 2))}]
     if kind == "gravitation":
-        return {"kind": "gravitation", "a": a.partition(".")[0], "b": b.partition(".")[0], "constant": 5}
+        return [{"kind": "gravitation", "a": a.partition(".")[0], "b": b.partition(".")[0], "constant": 5}]
     if kind == "inverse-square":
-        return {"kind": "inverse-square", "a": a, "b": b, "strength": draw.one((5, -5))}
-    return {"kind": "string", "name": "between", "through": [a, b], "length": 7}
+        return [{"kind": "inverse-square", "a": a, "b": b, "strength": draw.one((5, -5))}]
+    return [{"kind": "string", "name": f"between{first}", "through": [a, b], "length": 7}]

@@ -139,13 +139,21 @@ def atwood(draw: Draw) -> Unit:
 
 def double_pendulum(draw: Draw) -> Unit:
     """Return two rods that are pinned to one another and to the ground, level, hanging or folded."""
-    c, s, angle = draw.direction()
+    c, s, angle = draw.turned()
     one, two = draw.name("one"), draw.name("two")
     m = draw.mass()
     half = 0.5
     first: Json = {"mass": m, "inertia": f"{m}/12", "at": draw.at(f"{half}*({c})", f"{half}*({s})"), "angle": angle}
     first["places"] = {"top": [-half, 0], "end": [half, 0]}
-    second: Json = {"mass": m, "inertia": f"{m}/12", "at": draw.at(f"({c})", f"({s}) - {half}"), "angle": "-pi/2"}
+    # It hangs, or both are in one line, stretched or folded.
+    middle, way = draw.one(
+        (
+            ((c, f"({s}) - {half}"), "-pi/2"),
+            ((f"1.5*({c})", f"1.5*({s})"), angle),
+            ((f"{half}*({c})", f"{half}*({s})"), f"{angle} + pi"),
+        )
+    )
+    second: Json = {"mass": m, "inertia": f"{m}/12", "at": draw.at(*middle), "angle": way}
     second["places"] = {"top": [-half, 0], "end": [half, 0]}
     pins = [
         {"kind": "pin", "name": draw.name("hinge"), "a": f"{one}.top", "b": draw.at(0, 0)},
@@ -188,7 +196,7 @@ def gears(draw: Draw) -> Unit:
 
 def cart(draw: Draw) -> Unit:
     """Return a pendulum on a cart on rails."""
-    c, s, _ = draw.direction()
+    c, s, _ = draw.turned()
     k, p = draw.name("cart"), draw.name("bob")
     bodies: Json = {
         k: {"mass": draw.mass(), "at": draw.at(0, 0), "velocity": [draw.speed(), 0]},

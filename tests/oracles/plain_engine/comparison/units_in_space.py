@@ -33,7 +33,7 @@ def _rigid(draw: Draw, at: list[str]) -> Json:
 
 def spherical_pendulum(draw: Draw) -> Unit:
     """Return a point on a rod or a sphere."""
-    c, s, _ = draw.direction()
+    c, s, _ = draw.turned()
     p, v = draw.name("p"), draw.speed()
     body: Json = {
         "mass": draw.mass(),

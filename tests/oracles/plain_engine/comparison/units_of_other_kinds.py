@@ -203,7 +203,95 @@ def strung(draw: Draw) -> Unit:
     return Unit(bodies, cords, [a])
 
 
+def chain(draw: Draw) -> Unit:
+    """Return a heavy chain over a peg, with or without bodies at its ends, of which one may lie on a face.
+
+    It is tied to nothing: beside contacts and jerks a chain is refused, as it is documented.
+    """
+    a, b = draw.name("front"), draw.name("back")
+    c, s, _ = draw.one((("1", "0", ""), ("0.8", "0.6", ""), ("sqrt(1/2)", "sqrt(1/2)", ""), ("0", "1", "")))
+    reach = draw.one((0.5, 1, 1))
+    bodies: Json = {
+        a: {"mass": draw.one((0, 0, 1, 2)), "at": draw.at(0, draw.one((-1, -0.5)))},
+        b: {"mass": draw.one((0, 0, 1, 2)), "at": draw.at(f"-{reach}*({c})", f"-{reach}*({s})")},
+    }
+    through = [a, draw.at(0, 0), b]
+    heavy = {"kind": "chain", "name": draw.name("chain"), "through": through, "density": draw.one((0.8, 1, 2))}
+    return Unit(bodies, [heavy])
+
+
+def in_a_row(draw: Draw) -> Unit:
+    """Return two or three equal beads on one wire that meet one after another, or in an order that is given."""
+    count, e = draw.one((2, 3, 3)), draw.one((0, 0.5, 1, 1))
+    names = [draw.name(f"bead{i}") for i in range(count)]
+    near = 0.4 if draw.chance(0.5) else 0.2
+    m, v = draw.mass(), draw.one((1, 2, 3))
+    found = Unit(ends=[names[-1]])
+    for i, name in enumerate(names):
+        where = draw.at(near * i - (near if i == 0 else 0), 0)
+        found.bodies[name] = {"mass": m, "radius": 0.1, "inertia": 0.01, "at": where, "velocity": [0 if i else v, 0]}
+        found.bodies[name]["angular_velocity"] = 0
+        slide = {"kind": "slider", "name": f"on-{name}", "a": name, "b": draw.at(0, 0), "slope": 0}
+        found.connections.append(slide)
+    for i in range(count - 1):
+        meets = {"kind": "contact", "name": draw.name(f"pair{i}"), "a": names[i], "b": names[i + 1], "restitution": e}
+        found.connections.append(meets | ({"order": i + 1} if near == 0.2 else {}))
+    return found
+
+
+def on_two_supports(draw: Draw) -> Unit:
+    """Return a bar that falls level on two edges or on one, or leans over an edge."""
+    p, m = draw.name("bar"), draw.mass()
+    body: Json = {"mass": m, "inertia": f"{m}/3", "at": draw.at(0, draw.one((0.2, 0.05))), "velocity": [0, 0]}
+    body |= {"angular_velocity": 0, "places": {"l": [-1, 0], "r": [1, 0]}}
+    law = draw.rough()
+    ends = draw.one(("lr", "lr", "l"))
+    contacts = [
+        {"kind": "contact", "name": draw.name(f"on-{end}"), "place": f"{p}.{end}", "on": {"at": draw.at(0, 0)}, **law}
+        for end in ends
+    ]
+    return Unit({p: body}, contacts, [f"{p}.r"])
+
+
+def scissors(draw: Draw) -> Unit:
+    """Return a square of four rods between points, with one rod more than holds it, that swings from a corner."""
+    names = [draw.name(f"c{i}") for i in range(3)]
+    side = "sqrt(1/2)"
+    spots = (draw.at(f"-({side})", f"-({side})"), draw.at(0, f"-2*({side})"), draw.at(side, f"-({side})"))
+    bodies: Json = {name: {"mass": 1 if i != 1 else draw.mass(), "at": spots[i]} for i, name in enumerate(names)}
+    v = draw.speed()
+    bodies[names[1]]["velocity"] = [v, 0]
+    pairs = [(names[0], draw.at(0, 0)), (names[2], draw.at(0, 0)), (names[1], names[0]), (names[1], names[2])]
+    if draw.chance(0.7):
+        pairs.append((names[0], names[2]))
+    if draw.chance(0.4):
+        pairs.append((names[1], draw.at(0, 0)))
+    rods = [{"kind": "rod", "name": draw.name(f"side{i}"), "a": a, "b": b} for i, (a, b) in enumerate(pairs)]
+    return Unit(bodies, rods, [names[1]])
+
+
+def pushed_in_space(draw: Draw) -> Unit:
+    """Return a body of space with a lump welded to it, or a block on a plane, that a constant force pushes."""
+    p, lump, m = draw.name("body"), draw.name("lump"), draw.mass()
+    body: Json = {"mass": m, "moments": [f"{m}/10", f"{m}/5", f"3*{m}/20"], "at": [f"{draw.x}", 0, 0]}
+    body |= {"places": {"end": [0.5, 0, 0]}, "angular_velocity": [0, 0, draw.one((0, 0, 2))], "velocity": [0, 0, 0]}
+    push = draw.one(([1, 0, 0], [0, 3, 0], [0.6, 0.8, 0]))
+    force = {"kind": "force", "name": draw.name("push"), "place": f"{p}.end", "force": push}
+    if draw.chance(0.5):
+        heavy = {lump: {"mass": draw.mass(), "at": [f"{draw.x} + 0.5", 0, 0]}}
+        weld = {"kind": "weld", "name": draw.name("weld"), "a": lump, "b": f"{p}.end"}
+        return Unit({p: body} | heavy, [weld, force], [p])
+    on = {"at": [f"{draw.x}", 0, 0], "normal": [0, 0, 1]}
+    floor = {"kind": "contact", "name": draw.name("floor"), "place": p, "on": on, **draw.rough()}
+    point = {"mass": m, "at": [f"{draw.x}", 0, 0], "velocity": [draw.speed(), draw.speed(), 0]}
+    return Unit({p: point}, [floor, force | {"place": p}], [p])
+
+
 PLANE: tuple[Callable[[Draw], Unit], ...] = (
+    chain,
+    in_a_row,
+    on_two_supports,
+    scissors,
     rims,
     round_on_round,
     welded,
@@ -214,4 +302,4 @@ PLANE: tuple[Callable[[Draw], Unit], ...] = (
     plank,
     bridge,
 )
-SPACE: tuple[Callable[[Draw], Unit], ...] = (ball_in_a_round, twisted, strung)
+SPACE: tuple[Callable[[Draw], Unit], ...] = (ball_in_a_round, twisted, strung, pushed_in_space)

@@ -7,7 +7,7 @@ from tests.oracles.plain_engine.comparison.drawing import Draw, Json, Unit
 
 def pendulum(draw: Draw) -> Unit:
     """Return a point on a rod or a string, in half of all cases against a wall or a floor."""
-    c, s, _ = draw.direction()
+    c, s, _ = draw.turned()
     p, length, v = draw.name("p"), draw.one((0.5, 1, 1, 2)), draw.speed()
     # The angle is that with the downward vertical; at 90 degrees it starts level.
     x, y = f"{length}*({s})", f"-{length}*({c})"
