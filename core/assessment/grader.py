@@ -189,15 +189,16 @@ class Grader:
             raise EntryFault(claim.field, fault.rule, remedy=fault.remedy, sentence=sentence) from None
 
     def _formula(self, pointer: str, path: Path, reference: Reference, claim: Claim, formula: Formula) -> JudgedClaim:
+        bare = not formula.names and claim.unit is None
         if reference.form == "none":
-            return self._result(pointer, Judgement("incorrect"), reference)
+            return self._result(pointer, Judgement("missing-unit" if bare else "incorrect"), reference)
         try:
             # Names stand for numbers in SI units, and without a unit so does the value.
             times = 1.0 if claim.unit is None else factor(claim.unit, reference.unit)
         except EntryFault as fault:
             return self._result(pointer, Judgement("wrong-unit"), reference, why=[fault.sentence])
         judged = self._agreeing(formula, path, reference, times)
-        if not formula.names and claim.unit is None and judged.judgement.verdict == "incorrect":
+        if bare and judged.judgement.verdict == "incorrect":
             return self._result(pointer, Judgement("missing-unit"), reference)
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
