@@ -17,7 +17,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from core.errors import InvalidParameter, Path
+from core.errors import InvalidParameter
 
 LONGEST_FORMULA = 300
 """Characters."""
@@ -36,29 +36,6 @@ _DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?"
 _TOKEN = re.compile(rf"\s*(?:({_DIGITS})|([A-Za-z]\w*)|(\*\*|[-+*/^()]))", re.ASCII)
 
 T = TypeVar("T")
-
-
-class UnknownName(InvalidParameter):
-    """A formula uses a name that is not known.
-
-    Parameters
-    ----------
-    name : str
-    path, rule, remedy, further
-        As of `InvalidParameter`.
-    """
-
-    def __init__(
-        self,
-        path: str | Path,
-        rule: str,
-        *,
-        remedy: str | None = None,
-        further: Iterable[InvalidParameter] = (),
-        name: str = "",
-    ) -> None:
-        super().__init__(path, rule, remedy=remedy, further=further)
-        self.name = name
 
 
 def is_name(text: object) -> bool:
@@ -129,9 +106,7 @@ class Formula:
         Raises
         ------
         InvalidParameter
-            For a text that is none, is too long or too deeply nested.
-        UnknownName
-            For a name that is not among `known`.
+            For a text that is none, is too long or too deeply nested, or uses a name that is not among `known`.
         """
         if len(text) > LONGEST_FORMULA:
             raise InvalidParameter((), f"have at most {LONGEST_FORMULA} characters, not {len(text)}")
@@ -235,8 +210,7 @@ class _Reader:
             return Node("pi")
         if name in NAMES_OF_FUNCTIONS:
             return Node(_ALSO.get(name, name), inner=(self._parenthesis(),))
-        shown, remedy = name[:64], _names_here(self.known)
-        raise UnknownName((), f'use known names, unlike "{shown}"', remedy=remedy, name=shown)
+        raise InvalidParameter((), f'use known names, unlike "{name[:64]}"', remedy=_names_here(self.known))
 
     def _parenthesis(self) -> Node:
         if not self._take("("):

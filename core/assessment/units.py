@@ -14,8 +14,7 @@ from functools import cache, lru_cache
 from math import isfinite, pi
 from typing import Any
 
-from core.assessment.feedback.entry_fault import EntryFault
-from core.assessment.feedback.languages import Sentence
+from core.errors import InvalidParameter
 from core.work import spend
 
 LONGEST_UNIT = 40
@@ -23,19 +22,6 @@ LONGEST_UNIT = 40
 
 IMPORT = 1_000_000
 """Units of work (`core.work`) that importing pint counts for: it takes about a second, once in each process."""
-
-MALFORMED, UNKNOWN, OTHER_KIND, MILLISECOND, WITH_OFFSET, SIZE = (
-    f"unit-{what}" for what in ("malformed", "unknown", "other-kind", "millisecond", "with-offset", "size")
-)
-RULES: Mapping[str, str] = {
-    MALFORMED: "be a product of powers of units",
-    UNKNOWN: "be a known unit",
-    OTHER_KIND: "measure the same kind of quantity",
-    MILLISECOND: "measure the same kind of quantity",
-    WITH_OFFSET: "be a unit of which multiples can be added",
-    SIZE: "be of moderate size",
-}
-"""What a unit must be, by the key of the feedback on it."""
 
 _PLAIN = re.compile(r"[\w°%µμ·*/^()²³⁻¹. +-]+")
 _POWER = re.compile(r"(?<=[\w)°%µμ])\s*(?:\^|\*\*)\s*(?:-?[1-9]|\(-?[1-9]\))(?!\s*(?:\d|\.|\^|\*\*))")
@@ -65,23 +51,22 @@ def factor(given: str, unit: str) -> float:
 
     Raises
     ------
-    EntryFault
+    InvalidParameter
         If the unit is not known, or measures another kind of quantity.
     """
     if given == unit:
         return 1.0
     if len(given) > LONGEST_UNIT:
-        raise EntryFault("unit", f"have at most {LONGEST_UNIT} characters", sentence=Sentence(MALFORMED))
+        raise InvalidParameter("unit", f"have at most {LONGEST_UNIT} characters")
     found = _factor(given, unit)
     if isinstance(found, float):
         return found
-    key, remedy = found
-    raise EntryFault("unit", RULES[key], remedy=remedy, sentence=Sentence(key))
+    raise InvalidParameter("unit", found[0], remedy=found[1])
 
 
 @lru_cache(4096)
 def _factor(given: str, unit: str) -> float | tuple[str, str]:
-    """Return the factor, or the key of the rule that is broken and the remedy."""
+    """Return the factor, or the rule that is broken and its remedy."""
     own = _powers(given)
     if own is not None and own == _powers(unit):
         return 1.0
@@ -141,24 +126,24 @@ def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     # A text that is none of a unit's is not given to the parser, and numbers are nothing but powers of one digit: the
     # parser would work out 9**9**9.
     if not _PLAIN.fullmatch(given) or _NUMBER.search(_POWER.sub("", _RECIPROCAL.sub("/", given, count=1))):
-        return MALFORMED, remedy
+        return "be a product of powers of units", remedy
     try:
         parsed = _parsed(registry, given)
         quantity = registry.Quantity(1.0, parsed)
         reference = registry.parse_units("" if unit == "1" else unit)
     except Exception:
         # The parser has no error of its own for everything that is no unit.
-        return UNKNOWN, remedy
+        return "be a known unit", remedy
     powers = dict(quantity.unit_items())
     angular = any(name.endswith(_ANGLES) for name in powers)
     if parsed.dimensionality != reference.dimensionality or (unit == "1" and angular):
         if _MILLISECOND.search(given) and {"m", "s"} <= set(re.findall("[a-z]+", unit)):
-            return MILLISECOND, f"{remedy}; ms is a millisecond, and metres times seconds are m s"
-        return OTHER_KIND, remedy
+            remedy += "; ms is a millisecond, and metres times seconds are m s"
+        return "measure the same kind of quantity", remedy
     try:
         value = float(quantity.to(reference).magnitude)
     except Exception:
-        return WITH_OFFSET, remedy
+        return "be a unit of which multiples can be added", remedy
     if "rad" in unit.split():
         value *= (2.0 * pi) ** sum(power for name, power in powers.items() if name.endswith("hertz"))
-    return value if isfinite(value) and value > 0.0 else (SIZE, remedy)
+    return value if isfinite(value) and value > 0.0 else ("be of moderate size", remedy)

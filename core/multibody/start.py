@@ -57,7 +57,7 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
                 tuple(piece.table.names),
                 None if period is None else float(period),
                 motion.winding or None,
-                motion.small_motions,
+                tuple(mode.in_doubles() for mode in motion.modes),
                 PartErrors(
                     None if period is None else error_in_doubles(period),
                     motion.winding_error if motion.winding else None,

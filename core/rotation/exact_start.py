@@ -114,6 +114,29 @@ class ExactStart:
             return None
         return self.squared_momentum - self.twice_energy * moments[1]
 
+    def difference(self, middle: arb) -> arb:
+        """Return |D_B|, given an enclosure of the middle moment B.
+
+        Raises
+        ------
+        Undetermined
+            If the precision does not tell it from zero.
+        """
+        exact = self.middle_difference
+        if exact is not None:
+            return enclosed(abs(exact))
+        if self.side == 0:
+            return arb(0)
+        squared, twice_energy = self.invariants()
+        found = abs(squared - twice_energy * middle)
+        if not found > 0:
+            raise Undetermined
+        return found
+
+    def invariants(self) -> tuple[arb, arb]:
+        """Return L^2 and 2E as balls of the current precision."""
+        return enclosed(self.squared_momentum), enclosed(self.twice_energy)
+
     def tilts_below_45_degrees(self) -> bool:
         """Return whether the middle axis of a periodic motion comes within 45 degrees of the angular momentum.
 

@@ -23,14 +23,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from flint import arb
 
 from core.balls import Undetermined
-from core.digits.exact_inputs import enclosed
-from core.elliptic.ball_functions import ONE, ZERO, EllipticFunctions, PhaseOfTheta, carlson_rf, split
-from core.rotation.exact_start import Balls, ExactStart
+from core.elliptic.ball_functions import ONE, EllipticFunctions, PhaseOfTheta, carlson_rf, split
+from core.rotation.exact_start import Balls, PrincipalState
 
 QuaternionBalls = tuple[arb, arb, arb, arb]
 
@@ -91,12 +90,29 @@ def constants_of(moments: Balls, gaps: Balls, rates: Balls, side: int, differenc
     return MotionConstants(amplitudes, p, cb * X / (bd * Y), ac * difference / (bd * Y))
 
 
+class TurningStart(Protocol):
+    """The start of a rotation that is no steady spin."""
+
+    @property
+    def side(self) -> int:
+        """The sign of D_B = L^2 - 2E B."""
+
+    def principal_state(self) -> PrincipalState:
+        """Return the start in principal axes at the current precision."""
+
+    def difference(self, middle: arb) -> arb:
+        """Return |D_B|, given the middle moment B."""
+
+    def invariants(self) -> tuple[arb, arb]:
+        """Return L^2 and 2E."""
+
+
 class TurningMotion:
     """The constants of one motion at the precision at which it was built.
 
     Parameters
     ----------
-    start : ExactStart
+    start : TurningStart
         Of regime ``"periodic"`` or ``"separatrix"``.
 
     Raises
@@ -105,17 +121,19 @@ class TurningMotion:
         If the precision does not tell what the constants are.
     """
 
-    def __init__(self, start: ExactStart) -> None:
+    def __init__(self, start: TurningStart) -> None:
         state = start.principal_state()
         self.start, self.side, self.axes = start, start.side or -1, state.axes
         self.moments = state.moments
         d, c = (2, 0) if self.side > 0 else (0, 2)
         self.circled, self.other = d, c
-        constants = constants_of(state.moments, state.gaps, state.rates, self.side, self._difference())
+        difference = start.difference(state.moments[1])
+        constants = constants_of(state.moments, state.gaps, state.rates, self.side, difference)
         self.constants = constants
         self.A_c, self.A_b, self.A_d = constants.amplitudes
         self.p, self.m, self.m1 = constants.p, constants.m, constants.m1
-        self.L, self.twice_energy = enclosed(start.squared_momentum).sqrt(), enclosed(start.twice_energy)
+        squared, self.twice_energy = start.invariants()
+        self.L = squared.sqrt()
         # x and z along or against their principal axes; y completes them.
         towards_d = _sign(state.rates[d])
         towards_c = _sign(state.rates[c]) if self.separatrix else 1
@@ -134,17 +152,6 @@ class TurningMotion:
             half = 2 * self.functions.quarter
             self.u0 = self.functions.argument(sn, cn, dn)
             self.z0, self.frequency = self.u0 / half, self.p / half
-
-    def _difference(self) -> arb:
-        exact = self.start.middle_difference
-        if exact is not None:
-            return enclosed(abs(exact))
-        if self.start.side == 0:
-            return ZERO
-        found = abs(enclosed(self.start.squared_momentum) - enclosed(self.start.twice_energy) * self.moments[1])
-        if not found > 0:
-            raise Undetermined
-        return found
 
     @property
     def separatrix(self) -> bool:
@@ -183,11 +190,6 @@ class TurningMotion:
     def in_body(self, v: Balls) -> Balls:
         """Return a vector of the frame in body axes."""
         a, b, c = self.along_principal_axes(v)
-        if self.start.inertia.diagonal:
-            i, j, k = self.start.order
-            out = [a, b, c]
-            out[i], out[j], out[k] = a, b, c * self.axes[k][2]
-            return out[0], out[1], out[2]
         x, y, z = (row[0] * a + row[1] * b + row[2] * c for row in self.axes)
         return x, y, z
 

@@ -14,25 +14,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from flint import arb
+from flint import arb, ctx
 
 from core.arrays import Floats
-from core.balls import precision
+from core.balls import Undetermined, precision
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
-from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import Motion, States
+from core.multibody.motion.motion import BallState, Motion, States, in_pairs
 from core.multibody.table.table import Table
 
 _SMALL = 2.0**-98
 """Bound of the error of a state as a share of its size: eight bits more than the rounding to pairs."""
 
-_SOLVED = 2.0**-200
-"""Relative size of the last step of Newton's method: its square is far below the rounding of 320 bits."""
+_SOLVED = 0.625
+"""Share of the bits that the last step of Newton's method leaves right: its square is far below rounding."""
+
+_ENOUGH = 100
+"""Bits to which the distance has to be known."""
 
 _STUMPFF = [(1 / math.factorial(2 * k + 2), 1 / math.factorial(2 * k + 3)) for k in reversed(range(8))]
 _NODES = 96
@@ -137,36 +139,63 @@ class Kepler(Motion):
         AccuracyUnreachable
             At a time so far away that 320 bits do not tell the place.
         """
-        n = len(self.table.names)
-        q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
         with precision(BITS):
-            for k, t in enumerate(times):
-                self._sample(arb(float(t)), q[k], v[k])
+            found = [self._at(arb(float(t))) for t in times]
+            if not all(state.q[self.lengths[1]].rel_accuracy_bits() > _ENOUGH for state in found):
+                reason = "320 bits do not tell the place at this time"
+                raise AccuracyUnreachable(None, np.inf, reason, path=("times",))
+        q, v = in_pairs(found, len(self.table.names))
         size_q, size_v = np.abs(q[..., 0]), np.abs(v[..., 0])
         own = list(self.places)
         size_q[:, own] += np.linalg.norm(size_q[:, own], axis=1, keepdims=True)
         size_v[:, own] += np.linalg.norm(size_v[:, own], axis=1, keepdims=True)
         return States(q, v, _SMALL * size_q, _SMALL * size_v)
 
-    def _sample(self, time: Ball, q: Floats, v: Floats) -> None:
+    def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
+        """Return the states, with Kepler's equation solved in an interval; it raises as `Motion.in_balls`."""
+        # What is known of it at one precision is not known at a higher one.
+        own = replace(self)
+        return [own._at(time, proven=True) for time in times]
+
+    def _at(self, time: Ball, *, proven: bool = False) -> BallState:
+        """Return the state at a time."""
         distance, product, beta = self.constants
         period = self.period
         if period is not None:
             # Beside the nearest passage of the start, at most half a period away, the equation takes the fewest steps.
             time = time - period * (time / period + 0.5).mid().floor().mid()
         s = self._universal(time)
+        s = self._enclosed(s.mid(), time) if proven else s
         g0, g1, g2, g3 = stumpff(beta, s)
         r = distance * g0 + product * g1 + self.mu * g2
         rate = (product * g0 + (self.mu - beta * distance) * g1) / r
         f, g = 1 - self.mu * g2 / distance, time - self.mu * g3
         df, dg = -self.mu * g1 / (r * distance), 1 - self.mu * g2 / r
+        q, v = list(self.table.q), list(self.table.v)
         for i, c, x, u in zip(self.places, self.centre, *self.start, strict=True):
-            q[i], v[i] = pair(c + f * x + g * u, 0), pair(df * x + dg * u, 0)
+            q[i], v[i] = c + f * x + g * u, df * x + dg * u
         if self.lengths[0] is not None:
-            q[self.lengths[0]], v[self.lengths[0]] = pair(r, 0), pair(rate, 0)
-        q[self.lengths[1]], v[self.lengths[1]] = pair(1 / r, 0), pair(-rate / (r * r), 0)
-        if not r.rel_accuracy_bits() > 100:
-            raise AccuracyUnreachable(None, np.inf, "320 bits do not tell the place at this time", path=("times",))
+            q[self.lengths[0]], v[self.lengths[0]] = r, rate
+        q[self.lengths[1]], v[self.lengths[1]] = 1 / r, -rate / (r * r)
+        return BallState(q, v)
+
+    def _enclosed(self, s: Ball, time: Ball) -> Ball:
+        """Return an interval that holds the root of Kepler's equation, near s, by Newton's method in intervals."""
+        left, slope = self._equation(s, time)
+        around = s + arb(0, 1) * (2 * left / slope).abs_upper()
+        found = s - left / self._equation(around, time)[1]
+        if not around.contains(found):
+            raise Undetermined
+        return found
+
+    def _equation(self, s: Ball, time: Ball) -> tuple[Ball, Ball]:
+        """Return by how much the time of s is late, and its derivative, which is the distance."""
+        distance, product, beta = self.constants
+        g0, g1, g2, g3 = stumpff(beta, s)
+        return (
+            distance * g1 + product * g2 + self.mu * g3 - time,
+            distance * g0 + product * g1 + self.mu * g2,
+        )
 
     def _universal(self, time: Ball) -> Ball:
         """Return s at a time: by doubles in units of the start, then by Newton's method in balls."""
@@ -179,12 +208,10 @@ class Kepler(Motion):
             raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
         s = arb(universal_in_doubles(*scaled)) * unit / distance
         for _ in range(12):
-            g0, g1, g2, g3 = stumpff(beta, s)
-            left = distance * g1 + product * g2 + self.mu * g3 - time
-            slope = distance * g0 + product * g1 + self.mu * g2
+            left, slope = self._equation(s, time)
             step = left.mid() / slope.mid()
             s = (s - step).mid()
-            if abs(step) <= _SOLVED * abs(s):
+            if abs(step) <= arb(2) ** -int(_SOLVED * ctx.prec) * abs(s):
                 # Newton's method squares the error, which is far below the last step now.
                 return arb(s, abs(float(step)) * 2.0**-40) if abs(float(step)) > 0.0 else s
         raise AccuracyUnreachable(None, np.inf, "Kepler's equation is not solved in 320 bits", path=("times",))
@@ -275,15 +302,15 @@ def stumpff(beta: Ball, s: Ball) -> tuple[Ball, Ball, Ball, Ball]:
             sine, cosine = (root * s).sinh(), (root * s).cosh()
         g1 = sine / root
         return cosine, g1, (1 - cosine) / beta, (s - g1) / beta
-    term, g2, g3, k = ONE, ZERO, ZERO, 2
+    term, g2, g3, k, least = ONE, ZERO, ZERO, 2, arb(2) ** (-ctx.prec - 10)
     while True:
         g2, g3 = g2 + term, g3 + term / (k + 1)
         term = -term * x / ((k + 1) * (k + 2))
         k += 2
         # The sum is that of a series with alternating or positive terms that fall by more than a hundred each time.
-        if is_zero(term) or float(abs(term)) < 2.0**-330 or k > 200:
+        if is_zero(term) or abs(term) < least or k > ctx.prec:
             break
-    rest = arb(0, 2.0**-320)
+    rest = arb(0, 1) * 1024 * least
     g2, g3 = (g2 + rest) * s * s / 2, (g3 + rest) * s * s * s / 2
     return 1 - beta * g2, s - beta * g3, g2, g3
 

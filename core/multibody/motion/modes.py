@@ -20,12 +20,10 @@ from flint import acb, acb_mat, arb, arb_mat, ctx
 from core.arrays import Floats
 from core.balls import precision
 from core.multibody.algebra.characteristic_roots import roots_but_zero
-from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degree, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
-from core.multibody.model_answer import ModeErrors, SmallMotion
-from core.multibody.motion.motion import Motion, States, check_sample_count
+from core.multibody.motion.motion import BallState, Mode, Motion, States, check_sample_count
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table
 from core.work import spend
@@ -39,27 +37,6 @@ _BITS = 192
 
 MOST_CANCELLED = 64.0
 """How much larger the terms of a sum over modes may be than the start that they add up to, where doubles have to do."""
-
-
-@dataclass(frozen=True)
-class Mode:
-    """One pair of characteristic roots, or a real one.
-
-    Attributes
-    ----------
-    frequency : ball
-        Angular frequency (rad/s), a ball with zero where nothing oscillates.
-    growth : ball
-        Growth rate (1/s), negative where it decays.
-    """
-
-    frequency: Ball
-    growth: Ball
-
-    def in_doubles(self) -> SmallMotion:
-        """Return the mode as it is answered, with bounds of its errors."""
-        errors = ModeErrors(error_in_doubles(self.frequency), error_in_doubles(self.growth))
-        return SmallMotion(in_doubles(self.frequency), in_doubles(self.growth), errors)
 
 
 @dataclass(frozen=True)
@@ -130,11 +107,6 @@ class Modes(Motion):
         return [sign * x.sqrt() for x in squares for sign in (1, -1)] if self._undamped else squares
 
     @property
-    def small_motions(self) -> tuple[SmallMotion, ...]:
-        """The modes as they are answered."""
-        return tuple(mode.in_doubles() for mode in self.modes)
-
-    @property
     def is_faster_in_doubles(self) -> bool:
         """Return that it is."""
         return True
@@ -194,11 +166,11 @@ class Modes(Motion):
                 errors[s] = [float(x.rad()) + 2.0**-104 * abs(float(x)) for x in values[: 2 * n]]
         return States(q, v, errors[:, :n], errors[:, n:])
 
-    def proven(self, times: Sequence[Ball]) -> list[list[Ball]]:
-        """Return places and rates at each time, as balls of the present precision."""
-        start = [*self.table.q, *self.table.v, ONE]
+    def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
+        """Return the states at each time."""
+        start, n = [*self.table.q, *self.table.v, ONE], len(self.table.q)
         terms = self._terms(start)
-        return [self._at(t, start, terms) for t in times]
+        return [BallState(x[:n], x[n : 2 * n]) for x in (self._at(t, start, terms) for t in times)]
 
     def _terms(self, start: list[Ball]) -> Any:
         """Return roots and their vector coefficients, or None where roots coincide.

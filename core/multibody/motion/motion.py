@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -9,9 +10,10 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import BudgetExceeded
+from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import Ball, Poly
 from core.multibody.equations.packed import pair
-from core.multibody.model_answer import SmallMotion
+from core.multibody.model_answer import ModeErrors, SmallMotion
 from core.multibody.table.table import Table
 
 
@@ -33,6 +35,55 @@ class States:
     q_error: Floats
     v_error: Floats
     reference: tuple[Floats, Floats] | None = None
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One pair of characteristic roots, or a real one.
+
+    Attributes
+    ----------
+    frequency : ball
+        Angular frequency (rad/s), a ball with zero where nothing oscillates.
+    growth : ball
+        Growth rate (1/s), negative where it decays.
+    """
+
+    frequency: Ball
+    growth: Ball
+
+    def in_doubles(self) -> SmallMotion:
+        """Return the mode as it is answered, with bounds of its errors."""
+        errors = ModeErrors(error_in_doubles(self.frequency), error_in_doubles(self.growth))
+        return SmallMotion(in_doubles(self.frequency), in_doubles(self.growth), errors)
+
+
+@dataclass(frozen=True)
+class BallState:
+    """Coordinates and rates of one part at a time, in balls.
+
+    Attributes
+    ----------
+    q, v : sequence of ball
+    path : sequence of sequences of ball
+        Coordinates at times before, from the start on, between which no direction turns by half a turn.
+    turned : ball or None
+        Angle by which two coordinates on a circle, the first towards the second, have turned since the start (rad).
+    """
+
+    q: Sequence[Ball]
+    v: Sequence[Ball]
+    path: Sequence[Sequence[Ball]] = ()
+    turned: Ball | None = None
+
+
+def in_pairs(states: Sequence[BallState], count: int) -> tuple[Floats, Floats]:
+    """Return coordinates and rates of states as pairs, each of shape (t, count, 2)."""
+    q, v = np.zeros((len(states), count, 2)), np.zeros((len(states), count, 2))
+    for s, state in enumerate(states):
+        for i in range(count):
+            q[s, i], v[s, i] = pair(state.q[i], 0), pair(state.v[i], 0)
+    return q, v
 
 
 def check_sample_count(count: float, most: int) -> None:
@@ -106,8 +157,8 @@ class Motion(Protocol):
         return False
 
     @property
-    def small_motions(self) -> tuple[SmallMotion, ...]:
-        """The modes of a linear motion."""
+    def modes(self) -> tuple[Mode, ...]:
+        """The modes of a linear motion, slowest first."""
         return ()
 
     @property
@@ -129,6 +180,16 @@ class Motion(Protocol):
         """Return coordinates and rates at times of shape (t,), each of shape (t, n); None where doubles do not do.
 
         They are known to a few roundings: enough to see about when something changes its sign.
+        """
+        return None
+
+    def in_balls(self, times: Sequence[Ball]) -> list[BallState] | None:
+        """Return the states by a closed form at the present precision; None where there is none.
+
+        Raises
+        ------
+        Undetermined
+            Where the precision does not suffice.
         """
         return None
 
@@ -177,6 +238,10 @@ class Rest(Motion):
         shape = (len(times), len(q), 2)
         zero = np.zeros(shape[:2])
         return States(np.broadcast_to(q, shape).copy(), np.zeros(shape), zero, zero)
+
+    def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
+        """Return the start at every time."""
+        return [BallState(self.table.q, self.table.v)] * len(times)
 
     def nodes(self, end: float) -> Floats:
         """Return the two ends."""

@@ -7,19 +7,19 @@ of `core.scenes.pendulum` do not.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from flint import arb
+from flint import arb, ctx
 
 from core.arrays import Floats
 from core.balls import Undetermined, precision
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, entry, is_zero
-from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import Motion, States, check_sample_count
+from core.multibody.motion.motion import BallState, Motion, States, check_sample_count, in_pairs
 from core.multibody.table.table import Table
 from core.scenes.pendulum import Pendulum
 from core.scenes.pendulum_in_balls import pendulum_in_balls
@@ -55,14 +55,14 @@ class PlanePendulum(Motion):
     down: tuple[Ball, Ball]
     pendulum: Pendulum
     name: str = "pendulum"
-    why: str = "a point on a circle in a uniform field, close to the separatrix: elliptic functions"
+    why: str = "a point on a circle in a uniform field: elliptic functions"
     how: str = "closed form"
-    _known: dict[str, Any] = field(default_factory=dict, repr=False)
+    _known: dict[int, Any] = field(default_factory=dict, repr=False)
 
     @cached_property
     def period(self) -> Ball | None:
         """The period in seconds; None on the separatrix, where it never returns."""
-        with precision(BITS):
+        with precision(max(BITS, ctx.prec)):
             return self.pendulum.period
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
@@ -73,29 +73,36 @@ class PlanePendulum(Motion):
         AccuracyUnreachable
             At a time so far away that 320 bits do not tell the angle.
         """
-        q, v = np.zeros((len(times), 2, 2)), np.zeros((len(times), 2, 2))
-        q_error, v_error = np.zeros((len(times), 2)), np.zeros((len(times), 2))
         with precision(BITS):
-            if "angle" not in self._known:
-                self._known["angle"] = pendulum_in_balls(self.pendulum)
-            (x, y), (a, b) = self.centre, self.down
-            for s, t in enumerate(times.tolist()):
-                if t == 0.0:
-                    places, rates = self.table.q, self.table.v
-                else:
-                    try:
-                        half_sine, half_cosine, rate, _ = self._known["angle"](arb(t))
-                    except Undetermined:
-                        reason = "320 bits do not tell the angle at this time"
-                        raise AccuracyUnreachable(None, np.inf, reason, path=("times",)) from None
-                    sine, cosine = 2 * half_sine * half_cosine, half_cosine**2 - half_sine**2
-                    across, along = cosine * a - sine * b, cosine * b + sine * a
-                    places, rates = [x + across, y + along], [-rate * along, rate * across]
-                for i in range(2):
-                    q[s, i], v[s, i] = pair(places[i], 0), pair(rates[i], 0)
-                    q_error[s, i] = float(places[i].rad()) + _ENOUGH * abs(float(places[i]))
-                    v_error[s, i] = float(rates[i].rad()) + _ENOUGH * abs(float(rates[i]))
-        return States(q, v, q_error, v_error)
+            try:
+                states = self.in_balls([arb(float(t)) for t in times])
+            except Undetermined:
+                reason = "320 bits do not tell the angle at this time"
+                raise AccuracyUnreachable(None, np.inf, reason, path=("times",)) from None
+            q_error, v_error = (
+                np.array([[float(x.rad()) + _ENOUGH * abs(float(x)) for x in vector] for vector in vectors])
+                for vectors in ([state.q for state in states], [state.v for state in states])
+            )
+        return States(*in_pairs(states, 2), q_error.reshape(-1, 2), v_error.reshape(-1, 2))
+
+    def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
+        """Return the states by elliptic functions; it raises as `Motion.in_balls`."""
+        if ctx.prec not in self._known:
+            # What is known of it at one precision is not known at a higher one.
+            angle = pendulum_in_balls(replace(self.pendulum))
+            self._known[ctx.prec] = angle, angle(ZERO)[3]
+        angle, start = self._known[ctx.prec]
+        (x, y), (a, b) = self.centre, self.down
+        found = []
+        for time in times:
+            if time.is_zero():
+                found.append(BallState(self.table.q, self.table.v, turned=ZERO))
+                continue
+            half_sine, half_cosine, rate, turned = angle(time)
+            sine, cosine = 2 * half_sine * half_cosine, half_cosine**2 - half_sine**2
+            across, along = cosine * a - sine * b, cosine * b + sine * a
+            found.append(BallState([x + across, y + along], [-rate * along, rate * across], turned=turned - start))
+        return found
 
     def nodes(self, end: float) -> Floats:
         """Return eight times to a radian at the largest rate, over one period or up to `end`."""

@@ -11,8 +11,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, entry, is_zero
-from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import Motion, States, check_sample_count
+from core.multibody.motion.motion import BallState, Motion, States, check_sample_count, in_pairs
 from core.multibody.table.table import Table
 
 _PER_RADIAN = 8
@@ -56,20 +55,23 @@ class Turning(Motion):
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, right to the last bit of a pair or so."""
-        n = len(self.table.q)
-        q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
+        q, v = in_pairs(self.in_balls([arb(float(t)) for t in times]), len(self.table.q))
+        return States(q, v, 2.0**-100 * np.abs(q[..., 0]), 2.0**-100 * np.abs(v[..., 0]))
+
+    def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
+        """Return the states by sines and cosines."""
         c, s = self.direction
         first, second = self._away
-        for k, t in enumerate(times):
-            angle = self.rate * arb(float(t))
+        found = []
+        for time in times:
+            angle, q, v = self.rate * time, list(self.table.q), list(self.table.v)
             sine, cosine = angle.sin_cos()
-            x = first * cosine - second * sine
-            y = second * cosine + first * sine
-            q[k, c], q[k, s] = pair(self.centre[0] + x, 0), pair(self.centre[1] + y, 0)
-            v[k, c], v[k, s] = pair(-self.rate * y, 0), pair(self.rate * x, 0)
+            x, y = first * cosine - second * sine, second * cosine + first * sine
+            q[c], q[s], v[c], v[s] = self.centre[0] + x, self.centre[1] + y, -self.rate * y, self.rate * x
             if self.turn is not None:
-                q[k, self.turn], v[k, self.turn] = pair(self.table.q[self.turn] + angle, 0), pair(self.rate, 0)
-        return States(q, v, 2.0**-100 * np.abs(q[..., 0]), 2.0**-100 * np.abs(v[..., 0]))
+                q[self.turn], v[self.turn] = self.table.q[self.turn] + angle, self.rate
+            found.append(BallState(q, v, turned=angle if c < s else -angle))
+        return found
 
     @property
     def _away(self) -> tuple[Ball, Ball]:

@@ -13,7 +13,7 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import Motion, States
+from core.multibody.motion.motion import BallState, Motion, States
 from core.multibody.table.table import Table
 
 
@@ -47,6 +47,14 @@ class Uniform(Motion):
         place, fast, pull = (np.abs(x[:, 0])[None, :] for x in numbers)
         q_error = 2.0**-100 * (place + fast * t + pull * t * t)
         return States(q, v, q_error, 2.0**-100 * (fast + pull * t))
+
+    def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
+        """Return the states, which are polynomials in time."""
+        numbers = list(zip(self.table.q, self.table.v, self.acceleration, strict=True))
+        return [
+            BallState([x + t * (y + t * a / 2) for x, y, a in numbers], [y + t * a for _, y, a in numbers])
+            for t in times
+        ]
 
     def nodes(self, end: float) -> Floats:
         """Return enough times for what is at most quadratic in the state."""

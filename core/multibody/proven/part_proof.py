@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -14,16 +14,15 @@ from core.balls import Undetermined, precision
 from core.digits.adaptive_precision import working_bits
 from core.digits.decimals import decimal, floor_below, place_of
 from core.errors import NotApplicable
-from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
+from core.multibody.algebra.polynomials import BITS, ZERO, Ball, entry, evaluated, is_zero
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import PartModel, SceneModel, SmallMotion
 from core.multibody.motion.attitudes import angular_velocity, dot, quaternion
 from core.multibody.motion.modelling import Modelled, Piece, modelled
-from core.multibody.motion.modes import Modes
-from core.multibody.motion.motion import Motion, Rest
-from core.multibody.motion.uniform import Uniform
-from core.multibody.proven.proven_series import ProvenSeries, ProvenStep, Vector
+from core.multibody.motion.motion import BallState, Motion
+from core.multibody.motion.pendulum import plane_pendulum
+from core.multibody.proven.proven_series import ProvenSeries, Vector
 from core.multibody.start import noticed_of, scene_model, slack_strings
 from core.multibody.table.frames import Frame
 from core.multibody.trajectory.events import End, end_of, first_event
@@ -44,7 +43,7 @@ class PartProof:
     def __init__(self, scene: Scene, digits: int, first_bits: int) -> None:
         self.digits, self.first_bits = digits, first_bits
         with precision(max(BITS, ctx.prec)):
-            self.found = modelled(scene)
+            self.found = _in_closed_forms(modelled(scene))
             self.multipliers = multipliers_at_start(self.found.described.measures, self.found.whole.acceleration)
             self.forces = forces_at_start(self.found.described.measures, self.multipliers)
         _require_exact(self.found)
@@ -94,28 +93,25 @@ class PartProof:
         """Return what the bodies do, at times before what ends the motion."""
         whole, frames = self.found.whole, self.found.described.measures.coordinates.frames
         count = len(whole.reduced.table.names)
-        steps = [
+        states = [
             _states(piece, motion, self._directions(piece), times)
             for piece, (_, motion) in zip(self.found.pieces, whole.parts, strict=True)
         ]
         columns: dict[str, ProvenColumn] = {}
         for k in range(len(times)):
             z, w = [ZERO] * count, [ZERO] * count
-            for piece, found in zip(self.found.pieces, steps, strict=True):
+            for piece, found in zip(self.found.pieces, states, strict=True):
                 for i, x, y in zip(piece.indices, found[k].q, found[k].v, strict=True):
                     z[i], w[i] = x, y
             q = [evaluated(poly, z) for poly in whole.reduced.expressions]
             v = [sum((x * w[key[0]] for key, x in poly.items() if key), ZERO) for poly in whole.reduced.expressions]
             for name, frame in frames.items():
-                path = next(
-                    (
-                        found[k].path
-                        for piece, found in zip(self.found.pieces, steps, strict=True)
-                        if self._follows(piece, frame)
-                    ),
-                    [],
+                followed = (
+                    (piece, found[k])
+                    for piece, found in zip(self.found.pieces, states, strict=True)
+                    if self._follows(piece, frame)
                 )
-                for column, unit, value in self._of_body(name, frame, q, v, path):
+                for column, unit, value in self._of_body(name, frame, q, v, next(followed, None)):
                     columns.setdefault(f"{name}.{column}", ProvenColumn([], unit)).values.append(value)
         return columns
 
@@ -134,7 +130,9 @@ class PartProof:
             for i in frame.direction
         ]
 
-    def _of_body(self, name: str, frame: Frame, q: Vector, v: Vector, path: list[Vector]) -> list[tuple[str, str, Any]]:
+    def _of_body(
+        self, name: str, frame: Frame, q: Vector, v: Vector, followed: tuple[Piece, BallState] | None
+    ) -> list[tuple[str, str, Any]]:
         found: list[tuple[str, str, Any]] = [
             ("position", "m", self._vector([q[i] for i in frame.position])),
             ("velocity", "m/s", self._vector([v[i] for i in frame.position])),
@@ -144,7 +142,7 @@ class PartProof:
             found.append(("angular_velocity", "rad/s", self._vector([v[frame.turn]])[0]))
         elif frame.direction is not None:
             c, s = frame.direction
-            found.append(("angle", "rad", self._vector([self._angle(name, frame, q, path)])[0]))
+            found.append(("angle", "rad", self._vector([self._angle(name, frame, q, followed)])[0]))
             found.append(("angular_velocity", "rad/s", self._vector([q[c] * v[s] - q[s] * v[c]])[0]))
         elif frame.axis is not None:
             found.append(("axis", "1", self._vector([q[i] for i in frame.axis[1]])))
@@ -156,15 +154,23 @@ class PartProof:
             found.append(("angular_velocity_in_space", "rad/s", self._vector([v[i] for i in frame.turns])))
         return found
 
-    def _angle(self, name: str, frame: Frame, q: Vector, path: list[Vector]) -> Ball:
-        """Return an unwrapped angle: that at the start, and what was turned in every step since."""
+    def _angle(self, name: str, frame: Frame, q: Vector, followed: tuple[Piece, BallState] | None) -> Ball:
+        """Return an unwrapped angle: that at the start, and what was turned since, of a series in every step."""
         assert frame.direction is not None
-        measures, expressions = self.found.described.measures, self.found.whole.reduced.expressions
-        total = measures.coordinates.start_angle(name)
-        piece = next((piece for piece in self.found.pieces if self._follows(piece, frame)), None)
+        total = self.found.described.measures.coordinates.start_angle(name)
+        if followed is None:
+            return total
+        (piece, state), expressions = followed, self.found.whole.reduced.expressions
+        if state.turned is not None:
+            # A direction and the place on a circle that it follows are one turned, or reflected too.
+            first_line, second_line = (expressions[i] for i in frame.direction)
+            first, second = sorted({key for key in (*first_line, *second_line) if key})
+            sense = entry(first_line, first) * entry(second_line, second)
+            sense = sense - entry(first_line, second) * entry(second_line, first)
+            return total + (state.turned if sense > 0 else -state.turned)
         places = []
-        for own in path if piece is not None else []:
-            z = dict(zip(piece.indices, own, strict=True)) if piece is not None else {}
+        for own in state.path:
+            z = dict(zip(piece.indices, own, strict=True))
             places.append([evaluated(expressions[i], z) for i in frame.direction])
         places.append([q[i] for i in frame.direction])
         for (c, s), (x, y) in pairwise(places):
@@ -200,35 +206,29 @@ def _require_exact(found: Modelled) -> None:
         )
 
 
+def _in_closed_forms(found: Modelled) -> Modelled:
+    """Return models of which a pendulum, in doubles one period of a series, is a closed form."""
+    parts = [
+        (indices, plane_pendulum(piece.table, piece.chosen) or motion)
+        for piece, (indices, motion) in zip(found.pieces, found.whole.parts, strict=True)
+    ]
+    return replace(found, whole=replace(found.whole, parts=parts))
+
+
 def _in_numerals(model: SceneModel, found: Modelled, number: Callable[[Ball], Any]) -> SceneModel:
     """Return the model with the modes of linear parts as numerals, and without figures that are found in pairs."""
     apart = []
     for part, (_, motion) in zip(model.apart, found.whole.parts, strict=True):
-        modes: tuple[SmallMotion, ...] = ()
-        period = None
-        if isinstance(motion, Modes):
-            modes = tuple(SmallMotion(number(mode.frequency), number(mode.growth)) for mode in motion.modes)
-            period = None if motion.period is None else number(motion.period)
+        modes = tuple(SmallMotion(number(mode.frequency), number(mode.growth)) for mode in motion.modes)
+        known = motion.how == "closed form" and motion.period is not None
+        period = number(motion.period) if known else None
         apart.append(PartModel(part.name, part.why, part.degrees_of_freedom, part.coordinates, period, None, modes))
     return SceneModel(**{**vars(model), "apart": tuple(apart)})
 
 
-def _states(piece: Piece, motion: Motion, directions: Sequence[Any], times: Sequence[Ball]) -> list[ProvenStep]:
-    """Return the states of a part: in closed form where it is elementary, otherwise by its series."""
-    q, v = piece.table.q, piece.table.v
-    if isinstance(motion, Rest):
-        return [ProvenStep(q, v, [])] * len(times)
-    if isinstance(motion, Uniform):
-        a = motion.acceleration
-        return [
-            ProvenStep(
-                [x + t * (y + t * g / 2) for x, y, g in zip(q, v, a, strict=True)],
-                [y + t * g for y, g in zip(v, a, strict=True)],
-                [],
-            )
-            for t in times
-        ]
-    if isinstance(motion, Modes):
-        n = len(q)
-        return [ProvenStep(x[:n], x[n : 2 * n], []) for x in motion.proven(times)]
-    return ProvenSeries(piece.table, piece.chosen, directions).states(times)
+def _states(piece: Piece, motion: Motion, directions: Sequence[Any], times: Sequence[Ball]) -> Sequence[BallState]:
+    """Return the states of a part: in closed form where there is one, otherwise by its series."""
+    # Which branch of a closed form holds is decided with the bits of the set-up at least.
+    with precision(max(BITS, ctx.prec)):
+        known = motion.in_balls(times)
+    return ProvenSeries(piece.table, piece.chosen, directions).states(times) if known is None else known

@@ -1,8 +1,8 @@
 """A described scene to many digits: its start, and its motion where a closed form or a proven series reaches.
 
-The set-up of a scene is in balls anyway; here its precision follows the digits. Parts in constant acceleration or in
-modes are evaluated in closed form; every other part by `proven_series`. As in the set-up, what at least 320 bits do not
-tell from zero counts as zero.
+The set-up of a scene is in balls anyway; here its precision follows the digits. Parts whose model has a closed form
+are evaluated by it (`Motion.in_balls`), every other part by `proven_series`. As in the set-up, what at least 320 bits
+do not tell from zero counts as zero.
 """
 
 from __future__ import annotations

@@ -17,19 +17,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from operator import mul
 
 from flint import arb, arb_mat, ctx
 
-from core.balls import Undetermined
+from core.balls import Undetermined, precision
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated
+from core.multibody.motion.motion import BallState
 from core.multibody.table.table import Table
 from core.work import spend
 
-MOST_STEPS, MOST_WORK = 400, 12_000
-"""Steps that a motion may take on either side of the start, and the same times the square of its unknowns."""
+MOST_STEPS = 400
+"""Steps that a motion may take on either side of the start."""
+MOST_WORK = 9e7
+"""The same times the square of its unknowns and of their order: some twenty seconds."""
+_FAST_BITS = 1000
+"""Precision from which on a product takes longer in proportion to the square of its bits, about."""
+_PROBE_BITS = 100
+"""Precision of the step that shows how far a motion can be proven: its length hardly depends on the precision."""
 _WORK_OF_A_STEP = 3_000
 """Units of work (`core.work`) of a step."""
 
@@ -44,18 +50,6 @@ _SHORTENINGS = 60
 Vector = list[Ball]
 
 
-@dataclass(frozen=True)
-class ProvenStep:
-    """The state at a time, and the coordinates at the ends of the steps before it.
-
-    Between two of them, and from the last to the time, no direction turns by half a turn.
-    """
-
-    q: Vector
-    v: Vector
-    path: list[Vector]
-
-
 class ProvenSeries:
     """A table, of whose rows those `chosen` are independent, and the directions of which turns are counted."""
 
@@ -63,9 +57,8 @@ class ProvenSeries:
         self.table, self.rows = table, [table.rows[r] for r in chosen]
         self.directions = directions
         self.count = len(table.names)
-        self.most = min(MOST_STEPS, MOST_WORK // max(1, self.count + len(self.rows)) ** 2)
 
-    def states(self, times: Sequence[Ball]) -> list[ProvenStep]:
+    def states(self, times: Sequence[Ball]) -> list[BallState]:
         """Return the states at times in any order.
 
         Raises
@@ -75,41 +68,60 @@ class ProvenSeries:
         BudgetExceeded
             Where it would take more steps than allowed.
         """
-        found: dict[int, ProvenStep] = {}
+        found: dict[int, BallState] = {}
         for way in (1, -1):
             numbers = [k for k, t in enumerate(times) if (t >= 0 if way > 0 else t < 0)]
             self._march(way, sorted(((times[k] * way, k) for k in numbers), key=lambda pair: float(pair[0])), found)
         return [found[k] for k in range(len(times))]
 
-    def _march(self, way: int, wanted: Sequence[tuple[Ball, int]], found: dict[int, ProvenStep]) -> None:
+    @property
+    def most(self) -> int:
+        """Steps that the motion may take at the present precision."""
+        unknowns = max(1, self.count + len(self.rows))
+        return min(MOST_STEPS, int(MOST_WORK / (unknowns * _order() * max(1.0, ctx.prec / _FAST_BITS)) ** 2))
+
+    def _require_reachable(self, way: int, end: float) -> None:
+        """Raise `BudgetExceeded` where the first step shows that a motion cannot be proven up to a time."""
+        most = self.most
+        with precision(_PROBE_BITS):
+            start = self.table.q, self.table.v
+            try:
+                h, _ = self._tail(*start, self._coefficients(*start, _order()), _order(), way, math.inf)
+            except Undetermined:
+                return
+        if not 2 * most * float(h) >= end:
+            raise self._too_long(0.25 * float(h) * most, end, most)
+
+    def _march(self, way: int, wanted: Sequence[tuple[Ball, int]], found: dict[int, BallState]) -> None:
         q, v, start, path = list(self.table.q), list(self.table.v), ZERO, [list(self.table.q)]
-        order = max(12, int(_ORDERS * ctx.prec))
+        order, most = _order(), self.most
         waiting, steps = list(wanted), 0
+        if waiting:
+            self._require_reachable(way, float(waiting[-1][0]))
         while waiting:
             spend(_WORK_OF_A_STEP)
             series = self._coefficients(q, v, order)
             # Steps may become longer, but where twice as many are needed they do not become long enough.
-            least = float(waiting[-1][0] - start) / (2 * self.most - steps)
+            least = float(waiting[-1][0] - start) / (2 * most - steps)
             h, tail = self._tail(q, v, series, order, way, least)
             if not tail:
                 # Later steps are shorter, the more so the more digits are lost on the way.
-                reach = float(start) + 0.25 * float(h) * (self.most - steps)
-                raise self._too_long(reach, float(waiting[-1][0]), self.most)
+                reach = float(start) + 0.25 * float(h) * (most - steps)
+                raise self._too_long(reach, float(waiting[-1][0]), most)
             steps += 1
-            if steps > self.most:
+            if steps > most:
                 raise self._too_long(float(start), float(waiting[-1][0]), steps)
             while waiting and not waiting[0][0] > start + h:
                 time, k = waiting.pop(0)
-                found[k] = ProvenStep(*_at(series, tail, way * (time - start), order), path)
+                found[k] = BallState(*_at(series, tail, way * (time - start), order), path)
             q, v = _at(series, tail, way * h, order)
             start, path = start + h, [*path, q]
 
     def _too_long(self, reach: float, end: float, steps: int) -> BudgetExceeded:
         """Return the refusal of a motion of which so many steps reach to about some time (s) before its end."""
-        remedy = (
-            f"ask for times up to about {reach:.2g} s, or for an answer that is measured against pairs: POST /v1/scenes"
-        )
-        needed = math.ceil(steps * end / reach) if reach > 0.0 else math.inf
+        times = f"for times up to about {reach:.2g} s, " if reach > 0.0 else ""
+        remedy = f"ask {times}for fewer digits, or for an answer that is measured against pairs: POST /v1/scenes"
+        needed = math.ceil(steps * end / reach) if reach > 0.0 else 1
         return BudgetExceeded("proven steps", max(needed, self.most + 1), self.most, path=("times",), remedy=remedy)
 
     def _tail(
@@ -207,6 +219,11 @@ class ProvenSeries:
             for r in range(m):
                 pushes[r].append(solved[n + r])
         return q
+
+
+def _order() -> int:
+    """Return the order of a step at the present precision."""
+    return max(12, int(_ORDERS * ctx.prec))
 
 
 def _product(first: Vector, second: Vector, k: int) -> Ball:

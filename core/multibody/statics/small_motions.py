@@ -15,7 +15,7 @@ from core.multibody.algebra.characteristic_roots import roots_but_zero
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
 from core.multibody.algebra.rank import Elimination
 from core.multibody.algebra.spectrum import spectrum
-from core.multibody.motion.modes import Mode
+from core.multibody.motion.motion import Mode
 from core.multibody.statics.exact_places import ExactPlace, RestEquations
 from core.multibody.table.table import Table
 from core.work import spend

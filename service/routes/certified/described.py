@@ -38,8 +38,9 @@ class CertifiedSceneRequest(SceneDescription):
 
     times: DecimalTimes | None = Field(
         default=None,
-        description="Measured from the given state, of either sign, in any order. Constant accelerations and modes are "
-        "proven at any time, other motions for some seconds.",
+        description="Measured from the given state, of either sign, in any order. Motions with a closed form are "
+        "proven at any time: constant accelerations, modes, uniform rotations, pendulums, Kepler orbits, free bodies "
+        "whose axes are principal. Others are for some seconds; the more digits, the shorter.",
     )
     outputs: list[Output] | None = Field(
         default=None, min_length=1, description=f"What to answer; default: {', '.join(PROVEN_OUTPUTS)}."

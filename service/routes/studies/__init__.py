@@ -124,7 +124,6 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         price,
         description=DESCRIPTION,
         members=members,
-        paths=frozenset(route.path for route in routes),
     )
 
 

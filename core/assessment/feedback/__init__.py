@@ -1,1 +1,0 @@
-"""Feedback for those who submitted an answer, in several languages: one catalogue of texts for each."""
