@@ -17,7 +17,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, Path
 
 LONGEST_FORMULA = 300
 """Characters."""
@@ -36,6 +36,29 @@ _DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?"
 _TOKEN = re.compile(rf"\s*(?:({_DIGITS})|([A-Za-z]\w*)|(\*\*|[-+*/^()]))", re.ASCII)
 
 T = TypeVar("T")
+
+
+class UnknownName(InvalidParameter):
+    """A formula uses a name that is not known.
+
+    Parameters
+    ----------
+    name : str
+    path, rule, remedy, further
+        As of `InvalidParameter`.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        rule: str,
+        *,
+        remedy: str | None = None,
+        further: Iterable[InvalidParameter] = (),
+        name: str = "",
+    ) -> None:
+        super().__init__(path, rule, remedy=remedy, further=further)
+        self.name = name
 
 
 def is_name(text: object) -> bool:
@@ -106,7 +129,9 @@ class Formula:
         Raises
         ------
         InvalidParameter
-            For a text that is none, is too long or too deeply nested, or uses a name that is not among `known`.
+            For a text that is none, is too long or too deeply nested.
+        UnknownName
+            For a name that is not among `known`.
         """
         if len(text) > LONGEST_FORMULA:
             raise InvalidParameter((), f"have at most {LONGEST_FORMULA} characters, not {len(text)}")
@@ -210,7 +235,8 @@ class _Reader:
             return Node("pi")
         if name in NAMES_OF_FUNCTIONS:
             return Node(_ALSO.get(name, name), inner=(self._parenthesis(),))
-        raise InvalidParameter((), f'use known names, unlike "{name[:64]}"', remedy=_names_here(self.known))
+        shown, remedy = name[:64], _names_here(self.known)
+        raise UnknownName((), f'use known names, unlike "{shown}"', remedy=remedy, name=shown)
 
     def _parenthesis(self) -> Node:
         if not self._take("("):

@@ -149,9 +149,12 @@ class StudyRoute(PostRoute):
     ----------
     members : callable
         From question and budget to what answers the study's members.
+    paths : frozenset of str
+        Of the routes whose questions may have studies.
     """
 
     members: Callable[[Any, Budget], Any]
+    paths: frozenset[str]
 
     @property
     def duration(self) -> ExpectedDuration:

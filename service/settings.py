@@ -145,6 +145,13 @@ class Settings(BaseSettings):
         description="Memory of these processes together; one that takes more than its share is ended. 0 takes half "
         "of the machine's.",
     )
+    answer_seconds: float = Field(
+        default=600.0,
+        gt=0,
+        le=LONGEST,
+        description="Longest computation of an answer in the background (Prefer: respond-async); the study of a longer "
+        "one fails.",
+    )
     study_idle_seconds: float = Field(
         default=60.0, gt=0, le=LONGEST, description="Time without studies after which their processes are ended."
     )

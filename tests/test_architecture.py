@@ -235,6 +235,13 @@ TESTED_IN = {
     "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
 }
+TESTED_IN |= {
+    f"core/assessment/feedback/{name}.py": "core/assessment/feedback/test_languages.py"
+    for name in ("english", "french", "german", "spanish")
+}
+TESTED_IN["core/assessment/feedback/entry_fault.py"] = "core/assessment/test_typed_entry.py"
+TESTED_IN["core/assessment/carried.py"] = "core/assessment/test_grader.py"
+TESTED_IN["core/assessment/terms.py"] = "core/assessment/test_grader.py"
 TESTED_IN["core/assessment/gradable.py"] = "core/assessment/test_grader.py"
 TESTED_IN["core/assessment/sample_findings.py"] = "core/assessment/test_samples.py"
 TESTED_IN |= {

@@ -54,6 +54,5 @@ def claim(entry: Any, unit: str | None = None) -> dict[str, Any]:
 
 
 def feedback(result: dict[str, Any]) -> str:
-    """Return what is shown of a result: the feedback, or what could not be read."""
-    faults = [f"{fault['detail']}" for fault in result["format_errors"]]
-    return " ".join(faults) or str(result["feedback"])
+    """Return what is shown of a result: the feedback, which says what could not be read."""
+    return str(result["feedback"])

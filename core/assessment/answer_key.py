@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.arrays import Floats
+from core.assessment.carried import CarriedStep
 from core.assessment.compare import Reference
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.grader import Grader
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.results import Result, submission_view
-from core.assessment.typed_entry import Locale
+from core.assessment.terms import Terms
 from core.errors import NotApplicable, Path, pointer_of
 from core.quantities import members_of
 
@@ -37,31 +38,6 @@ STATED = tuple(entry.name for entry in fields(Reference) if entry.init)
 
 Place = tuple[Path, tuple[float, ...] | None]
 """Of a figure, or of a column at other times."""
-
-
-@dataclass(frozen=True)
-class Terms:
-    """How submissions to a question are graded, as a request to the service says.
-
-    Attributes
-    ----------
-    comparison : Comparison or None
-        Of every figure without one of its own.
-    comparisons : mapping of str to Comparison
-        By pointer.
-    reveal : bool
-        Whether results may say anything from which the reference could be found.
-    names : mapping of str to path, or None
-        Of the numbers of the request, in formulas.
-    locale : {"de", "en", "es", "fr"}, optional
-        Of who types the texts of submissions.
-    """
-
-    comparison: Comparison | None
-    comparisons: Mapping[str, Comparison]
-    reveal: bool
-    names: Mapping[str, Path] | None
-    locale: Locale | None = None
 
 
 def key_of(
@@ -84,7 +60,7 @@ def key_of(
     columns : sequence of (str, sequence of float)
         Pointers to columns of samples, each with times.
     """
-    paths = dict.fromkeys([*(steps_of(pointer) for pointer in claimed), *figures_within(question.answer)])
+    paths = dict.fromkeys([*map(steps_of, (*claimed, *terms.steps)), *figures_within(question.answer)])
     found: list[tuple[Place, Reference]] = [
         ((path, None), reference) for path in paths if (reference := question.reference(path)) is not None
     ]
@@ -114,10 +90,10 @@ def key_of(
         "comparisons": {pointer: vars(comparison) for pointer, comparison in terms.comparisons.items()},
         "reveal": terms.reveal,
         "locale": terms.locale,
+        "language": terms.language,
+        "steps": {pointer: vars(step) for pointer, step in terms.steps.items()},
         "figures": [_figure(question, place, reference, recognised) for place, reference in found],
-        "mistakes": [
-            {name: getattr(entry, name) for name in ("tag", "summary", "feedback", "credit")} for entry in catalogue
-        ],
+        "mistakes": [{name: getattr(entry, name) for name in ("tag", "summary", "credit")} for entry in catalogue],
         "parameters": {name: [list(path), value, unit] for name, (path, value, unit) in parameters.items()},
         "settings": settings,
         "variations": variations,
@@ -204,17 +180,23 @@ class AnswerKey:
     def grader(self) -> Grader:
         """Return what grades with the key as the service grades."""
         document = self._document
-        comparisons = {pointer: _comparison(entry) for pointer, entry in document["comparisons"].items()}
-        comparison = None if document["comparison"] is None else _comparison(document["comparison"])
+        terms = Terms(
+            None if document["comparison"] is None else _comparison(document["comparison"]),
+            {pointer: _comparison(entry) for pointer, entry in document["comparisons"].items()},
+            document["reveal"],
+            locale=document["locale"],
+            language=document["language"],
+            steps={pointer: CarriedStep(**entry) for pointer, entry in document["steps"].items()},
+        )
         catalogue = [
             Mistake(**entry, wrong=partial(self._wrong_values, entry["tag"])) for entry in document["mistakes"]
         ]
-        return Grader(self, comparison, comparisons, document["reveal"], catalogue, None, document["locale"])
+        return Grader(self, terms, catalogue)
 
     def results(self, submissions: Sequence[Any]) -> list[Result]:
         """Return the results of submissions, as the service answers them."""
-        grader, reveal = self.grader(), self._document["reveal"]
-        return [submission_view(i, grader.judged(one), reveal=reveal) for i, one in enumerate(submissions)]
+        grader = self.grader()
+        return [submission_view(i, grader.judged(one), grader.terms) for i, one in enumerate(submissions)]
 
     def evaluate(self, request: Any) -> Callable[[Path], Any]:
         """Find nothing: no question is question."""

@@ -28,12 +28,13 @@ import numpy as np
 from core.arrays import Floats
 from core.assessment.comparisons import Comparison, Interval, RelAbs
 from core.assessment.curves import separation
+from core.assessment.feedback.languages import Sentence
 from core.errors import InvalidParameter
 
 Form = Literal[
     "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "curve", "none"
 ]
-Verdict = Literal["correct", "incorrect", "missing-unit", "wrong-unit", "not-gradable", "unreadable"]
+Verdict = Literal["correct", "incorrect", "carried", "missing-unit", "wrong-unit", "not-gradable", "unreadable"]
 
 LEAST_OF_A_CURVE, MOST_OF_A_CURVE = 8, 2000
 """Points of a submitted curve."""
@@ -207,13 +208,13 @@ def distance(reference: Reference, value: Any) -> float:
         return _bounded(_DISTANCES[reference.form](value, right, reference))
 
 
-def exchanged(rows: Floats, right: Floats) -> str:
-    """Return how axes are exchanged in samples that are right but for their order, as a sentence."""
+def exchanged(rows: Floats, right: Floats) -> Sentence:
+    """Return how axes are exchanged in samples that are right but for their order."""
     order = min(permutations(range(3)), key=lambda order: float(np.abs(rows - right[:, list(order)]).max()))
     moved = [k + 1 for k in range(3) if order[k] != k]
     if len(moved) == 2:
-        return f"Axes {moved[0]} and {moved[1]} are exchanged."
-    return f"The axes stand in the order {', '.join(str(k + 1) for k in order)}."
+        return Sentence("axes-exchanged", {"one": str(moved[0]), "other": str(moved[1])})
+    return Sentence("axes-order", {"order": ", ".join(str(k + 1) for k in order)})
 
 
 def _entries(value: Floats, right: Floats, reference: Reference) -> float:

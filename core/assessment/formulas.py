@@ -7,7 +7,6 @@ import operator
 from collections.abc import Mapping
 from fractions import Fraction
 
-from core.errors import InvalidParameter
 from core.formulas import FUNCTIONS, Arithmetic, Formula, Node, value_of
 
 Powers = Mapping[str, Fraction]
@@ -19,6 +18,20 @@ LARGEST_POWER = 20
 
 class Undefined(ValueError):
     """The formula has no value at these parameters: a division by zero, a root of a negative number, an overflow."""
+
+
+class DimensionFault(ValueError):
+    """Terms of a sum have different dimensions, or a function or an exponent has one.
+
+    Parameters
+    ----------
+    key : str
+        Of the feedback on it.
+    """
+
+    def __init__(self, key: str) -> None:
+        super().__init__(key)
+        self.key = key
 
 
 DOUBLES = Arithmetic[float](
@@ -52,7 +65,7 @@ def dimensions(formula: Formula, units: Mapping[str, Powers]) -> Powers:
 
     Raises
     ------
-    InvalidParameter
+    DimensionFault
         If terms of a sum have different ones, or a function or an exponent has any.
     """
     return _dimensions(formula.root, units)
@@ -70,16 +83,16 @@ def _dimensions(node: Node, units: Mapping[str, Powers]) -> Powers:
         return _scaled(inner[0], Fraction(1, 2))
     if node.kind in FUNCTIONS:
         if inner[0]:
-            raise InvalidParameter((), "have functions of pure numbers only")
+            raise DimensionFault("dimension-function")
         return {}
     one, other = inner
     if node.kind in ("+", "-"):
         if one != other:
-            raise InvalidParameter((), "add only terms of equal dimensions")
+            raise DimensionFault("dimension-terms")
         return one
     if node.kind == "^":
         if other or (one and _exponent(node.inner[1]) is None):
-            raise InvalidParameter((), "have pure numbers as exponents")
+            raise DimensionFault("dimension-exponent")
         return _scaled(one, _exponent(node.inner[1]) or Fraction(0))
     sign = 1 if node.kind == "*" else -1
     both = {name: one.get(name, Fraction(0)) + sign * other.get(name, Fraction(0)) for name in {*one, *other}}

@@ -140,10 +140,10 @@ class GradedQuestion:
         for outputs in ([path[0], *own], [path[0], *in_time])[: 2 if in_time else 1]:
             if path[0] in self._source.outputs:
                 request["outputs"] = [*dict.fromkeys(outputs)]
-            answer = self._answered(request)
-            value = value_at(answer, path)
+            sampled = GradedQuestion(self._source, request, self._uncertainty)
+            value = value_at(sampled.answer, path)
             if isinstance(value, np.ndarray) and len(value) == len(times):
-                return self._stated(path, value, "samples", answer)
+                return sampled._stated(path, value, "samples", sampled.answer)
         return None
 
     def parameters(self, names: Mapping[str, Path] | None) -> dict[str, tuple[Path, float, str]]:

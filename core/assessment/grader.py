@@ -10,14 +10,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.arrays import Floats
+from core.assessment.carried import follows
 from core.assessment.claims import MOST_CLAIMS, Claim
 from core.assessment.compare import Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
+from core.assessment.feedback.entry_fault import EntryFault
+from core.assessment.feedback.languages import Sentence
 from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.formula_variations import Variation
 from core.assessment.formulas import Undefined, value_in_doubles
 from core.assessment.gradable import Question
-from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission, explained
+from core.assessment.judged_claims import (
+    MOST_NAMED,
+    JudgedClaim,
+    JudgedSubmission,
+    explained,
+    unknown_name,
+    wanted_form,
+)
 from core.assessment.judged_formulas import (
     AT_ONE_PLACE,
     FORMULA,
@@ -29,10 +39,10 @@ from core.assessment.judged_formulas import (
 )
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
-from core.assessment.typed_entry import Locale
+from core.assessment.terms import Terms
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path, pointer_of
-from core.formulas import Formula
+from core.formulas import Formula, UnknownName
 from core.work import spend
 
 if TYPE_CHECKING:
@@ -50,9 +60,6 @@ MOST_SOLVED = 3
 
 LONGEST_POINTER = 200
 
-MOST_NAMED = 10
-"""Figures of an object that are named where a pointer stops at it."""
-
 UNITLESS = ("1", "rad")
 """Units that may be left out."""
 
@@ -63,17 +70,8 @@ class Grader:
     Parameters
     ----------
     question : Question
-    comparison : Comparison or None
-        Of every figure that has none of its own.
-    comparisons : mapping of str to Comparison
-        By pointer.
-    reveal : bool
-        Whether results may say anything from which the reference could be found.
+    terms : Terms
     catalogue : sequence of Mistake
-    names : mapping of str to path, or None
-        Of the numbers of the request, in formulas.
-    locale : {"de", "en", "es", "fr"}, optional
-        Of who typed the texts of submissions.
 
     Attributes
     ----------
@@ -85,20 +83,11 @@ class Grader:
         Pointers to figures of which a formula was not judged, because too few variations of the question say anything.
     """
 
-    def __init__(
-        self,
-        question: Question,
-        comparison: Comparison | None,
-        comparisons: Mapping[str, Comparison],
-        reveal: bool,
-        catalogue: Sequence[Mistake],
-        names: Mapping[str, Path] | None,
-        locale: Locale | None = None,
-    ) -> None:
-        self._question, self._comparison, self._comparisons = question, comparison, comparisons
-        self._reveal, self._names, self._locale = reveal, names, locale
+    def __init__(self, question: Question, terms: Terms, catalogue: Sequence[Mistake]) -> None:
+        self._question, self.terms = question, terms
+        self._reveal, self._names = terms.reveal, terms.names
         # Who knows how a value is wrong can often compute the right one from it.
-        self._catalogue = tuple(catalogue) if reveal else ()
+        self._catalogue = tuple(catalogue) if terms.reveal else ()
         self.references: dict[str, Reference] = {}
         self._samples: dict[tuple[str, bytes], Reference] = {}
         self._columns: dict[int, tuple[ExactSamples, MethodSearch]] = {}
@@ -117,10 +106,32 @@ class Grader:
         for pointer, entry in submission.items():
             spend(CLAIM)
             try:
-                claims.append(self._claim(pointer, Claim.read(entry, self._locale)))
+                claims.append(self._claim(pointer, Claim.read(entry, self.terms.locale)))
             except InvalidParameter as fault:
                 faults.append(fault.inside(pointer) if len(pointer) <= LONGEST_POINTER else fault)
-        return JudgedSubmission(claims, faults)
+        return JudgedSubmission(self._with_carried(claims), faults)
+
+    def _with_carried(self, claims: list[JudgedClaim]) -> list[JudgedClaim]:
+        """Return claims, those that follow from wrong earlier ones marked as such."""
+        values = {one.pointer: one.value for one in claims if one.value is not None}
+        wrong = {one.pointer for one in claims if not one.judgement.correct}
+        found = []
+        for one in claims:
+            step = self.terms.steps.get(one.pointer)
+            if step is not None and one.judgement.verdict == "incorrect" and one.value is not None:
+                sources = {*step.earlier.values()}
+                if sources <= values.keys() and sources & wrong:
+                    parameters = {name: value for name, (_, value, _) in self._parameters.items()}
+                    comparison = self._comparison(one.pointer)
+                    if follows(step, one.value, one.reference, comparison, parameters, values):
+                        judgement = replace(one.judgement, verdict="carried")
+                        sentences = (Sentence("carried"),)
+                        one = replace(one, judgement=judgement, mistakes=(), sentences=sentences, carried=step.credit)
+            found.append(one)
+        return found
+
+    def _comparison(self, pointer: str) -> Comparison | None:
+        return self.terms.comparisons.get(pointer, self.terms.comparison)
 
     def _claim(self, pointer: str, claim: Claim) -> JudgedClaim:
         path = steps_of(pointer)
@@ -134,58 +145,67 @@ class Grader:
             try:
                 claim = replace(claim, value=value_in_doubles(formula, {}))
             except Undefined:
-                return self._result(pointer, Judgement("incorrect"), reference, why=UNDEFINED)
+                return self._result(pointer, Judgement("incorrect"), reference, why=[Sentence(UNDEFINED)])
         try:
             value = _converted(claim, reference)
-        except InvalidParameter as fault:
-            if fault.path == ("value",):
-                raise
-            return self._result(pointer, Judgement("wrong-unit"), reference, why=f"The unit must {fault.rule}.")
+        except EntryFault as fault:
+            return self._result(pointer, Judgement("wrong-unit"), reference, why=[fault.sentence])
         if value is None and claim.value is not None:
             return self._result(pointer, Judgement("missing-unit"), reference)
-        comparison = self._comparisons.get(pointer, self._comparison)
+        comparison = self._comparison(pointer)
         try:
             judgement = compare(reference, value, comparison)
         except InvalidParameter as fault:
-            raise fault.inside("value") from None
+            sentence = wanted_form(reference)
+            raise EntryFault(("value", *fault.path), fault.rule, remedy=fault.remedy, sentence=sentence) from None
         if judgement.verdict != "incorrect" or value is None or reference.form == "none":
-            return self._result(pointer, judgement, reference)
+            return self._result(pointer, judgement, reference, value=value)
         mistakes = self._wrong_values(path, reference, claim.times).matching(value, comparison)
         if claim.times is None or path != ("angular_velocity",):
-            return self._result(pointer, judgement, reference, mistakes)
+            return self._result(pointer, judgement, reference, mistakes, value=value)
         samples = self._samples_judged(claim.times, value, reference, judgement, identify=not mistakes)
-        why = [explained(mistakes)] if mistakes else []
+        why = [*explained(mistakes)]
         if any(one.tag == "permuted-axes" for one in mistakes):
             why.append(exchanged(value, reference.value))
         if samples is not None and not mistakes:
             errors, found = samples
-            why = [errors.sentence] if errors.sentence else []
+            why = [] if errors.sentence is None else [errors.sentence]
             why += [] if found is None else [found.sentence]
-        return self._result(pointer, judgement, reference, mistakes, " ".join(why), samples)
+        return self._result(pointer, judgement, reference, mistakes, why, samples)
 
     def _read(self, claim: Claim, text: str, reference: Reference) -> Formula:
         """Return the formula of a claim."""
         if reference.form not in ("number", "angle", "none"):
-            raise InvalidParameter(claim.field, "be left out: the figure is no number")
+            sentence = Sentence("formula-not-expected")
+            raise EntryFault(claim.field, "be left out: the figure is no number", sentence=sentence)
         try:
             return Formula.read(text, self._parameters)
         except InvalidParameter as fault:
-            raise fault.inside(claim.field) from None
+            sentence = (
+                unknown_name(fault.name, self._parameters)
+                if isinstance(fault, UnknownName)
+                else Sentence("formula-malformed")
+            )
+            raise EntryFault(claim.field, fault.rule, remedy=fault.remedy, sentence=sentence) from None
 
     def _formula(self, pointer: str, path: Path, reference: Reference, claim: Claim, formula: Formula) -> JudgedClaim:
+        bare = not formula.names and claim.unit is None
         if reference.form == "none":
-            return self._result(pointer, Judgement("incorrect"), reference)
+            return self._result(pointer, Judgement("missing-unit" if bare else "incorrect"), reference)
         try:
             # Names stand for numbers in SI units, and without a unit so does the value.
             times = 1.0 if claim.unit is None else factor(claim.unit, reference.unit)
-        except InvalidParameter as fault:
-            return self._result(pointer, Judgement("wrong-unit"), reference, why=f"The unit must {fault.rule}.")
+        except EntryFault as fault:
+            return self._result(pointer, Judgement("wrong-unit"), reference, why=[fault.sentence])
         judged = self._agreeing(formula, path, reference, times)
+        if bare and judged.judgement.verdict == "incorrect":
+            return self._result(pointer, Judgement("missing-unit"), reference)
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
             mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
-        said = not mistakes and (self._reveal or judged.why == NOT_JUDGED)
-        return self._result(pointer, judged.judgement, reference, mistakes, judged.why if said else "")
+        said = judged.why and not mistakes and (self._reveal or judged.why == NOT_JUDGED)
+        why = [Sentence(judged.why)] if said else []
+        return self._result(pointer, judged.judgement, reference, mistakes, why, value=judged.value)
 
     def _agreeing(self, formula: Formula, path: Path, reference: Reference, times: float) -> JudgedFormula:
         """Judge a formula at variations of the named numbers, or of those that may vary without `names`.
@@ -296,13 +316,16 @@ class Grader:
         judgement: Judgement,
         reference: Reference,
         mistakes: tuple[Mistake, ...] = (),
-        why: str = "",
+        why: Sequence[Sentence] = (),
         samples: tuple[SampleErrors, Consistent | None] | None = None,
+        *,
+        value: Any = None,
     ) -> JudgedClaim:
-        feedback = why or explained(mistakes) or FEEDBACK[judgement.verdict]
+        sentences = (*why,) or explained(mistakes) or (Sentence(judgement.verdict),)
         if reference.sensitive is not None and judgement.verdict != "correct":
-            feedback += f" Compare {reference.sensitive}: the figure itself is so near a constant that it shows little."
-        return JudgedClaim(pointer, judgement, reference, mistakes, feedback, samples)
+            sentences += (Sentence("sensitive", {"name": reference.sensitive}),)
+        number = value if type(value) is float else None
+        return JudgedClaim(pointer, judgement, reference, mistakes, sentences, samples, number)
 
 
 def credited(catalogue: Sequence[Mistake], credits: Mapping[str, float]) -> tuple[Mistake, ...]:

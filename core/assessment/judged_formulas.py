@@ -9,9 +9,8 @@ from typing import Protocol
 
 from core.assessment.compare import Judgement, Reference, compare
 from core.assessment.comparisons import RelAbs
-from core.assessment.formulas import Powers, Undefined, dimensions, value_in_doubles
+from core.assessment.formulas import DimensionFault, Powers, Undefined, dimensions, value_in_doubles
 from core.assessment.units import base_powers
-from core.errors import InvalidParameter
 from core.formulas import Formula
 
 FORMULA = RelAbs(rtol=1e-8)
@@ -42,7 +41,7 @@ class JudgedFormula:
     judgement : Judgement
         With the error at the question's own parameters.
     why : str
-        What is wrong; empty if nothing is known of it.
+        Key of the feedback on what is wrong; empty if nothing is known of it.
     value : float or None
         At the question's own parameters; None where the formula has none.
     """
@@ -92,9 +91,10 @@ def judge_formula(
     return JudgedFormula(own, _dimensional_fault(formula, units, reference.unit) or why, None if why else values[0])
 
 
-UNDEFINED = "The formula has no value at such parameters."
-NOT_JUDGED = "A formula cannot be judged here. Write the number, with its unit."
-AT_ONE_PLACE = "The formula agrees at the given parameters, and at others it does not."
+UNDEFINED = "formula-undefined"
+NOT_JUDGED = "formula-not-judged"
+AT_ONE_PLACE = "formula-at-one-place"
+"""Keys of feedback."""
 
 
 def _agrees(value: float, one: Varied, reference: Reference) -> bool:
@@ -103,7 +103,7 @@ def _agrees(value: float, one: Varied, reference: Reference) -> bool:
 
 
 def _dimensional_fault(formula: Formula, units: Mapping[str, str], unit: str) -> str:
-    """Return what is wrong with the dimensions of a formula; empty if nothing is, or units are not known."""
+    """Return the key of what is wrong with the dimensions of a formula; empty if nothing is, or units are not known."""
     known: dict[str, Powers] = {}
     for name in formula.names:
         powers = base_powers(units[name])
@@ -113,8 +113,8 @@ def _dimensional_fault(formula: Formula, units: Mapping[str, str], unit: str) ->
     wanted = base_powers(unit)
     try:
         found = dimensions(formula, known)
-    except InvalidParameter as fault:
-        return f"Check the dimensions: the formula must {fault.rule}."
+    except DimensionFault as fault:
+        return fault.key
     if wanted is not None and found != {base: Fraction(power) for base, power in wanted.items()}:
-        return "Check the dimensions: the formula is not of the kind of the quantity."
+        return "dimension"
     return ""

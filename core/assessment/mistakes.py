@@ -71,11 +71,9 @@ class Mistake:
     Attributes
     ----------
     tag : str
-        Stable.
+        Stable; also the key of the feedback (`core.assessment.feedback`), a sentence that gives no number.
     summary : str
         What was done.
-    feedback : str
-        A sentence for who made the mistake; it gives no number.
     credit : float
         Share of the score, from 0 to 1.
     wrong : callable
@@ -84,7 +82,6 @@ class Mistake:
 
     tag: str
     summary: str
-    feedback: str
     wrong: Callable[[Figure], Iterable[Any]] = field(repr=False)
     credit: float = 0.0
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from core.assessment.compare import Reference
+from core.assessment.feedback.languages import Sentence
 from core.assessment.grader import Grader
-from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission
+from core.assessment.judged_claims import JudgedClaim, JudgedSubmission, text
+from core.assessment.terms import Terms
 from core.errors import InvalidParameter, Path, pointer_of
 
 Result = dict[str, Any]
 
 
-def submission_view(index: int, judged: JudgedSubmission, *, reveal: bool) -> Result:
+def submission_view(index: int, judged: JudgedSubmission, terms: Terms) -> Result:
     """Return the result of a submission, `SubmissionResult`."""
     claims = judged.claims
     gradable = not judged.faults and all(one.judgement.correct is not None for one in claims)
@@ -21,9 +23,9 @@ def submission_view(index: int, judged: JudgedSubmission, *, reveal: bool) -> Re
         "correct": all(one.judgement.correct for one in claims) if gradable else None,
         "gradable": gradable,
         "format_errors": [_fault_view(fault, ("submissions", index)) for fault in judged.faults],
-        "tests": [_claim_view(one, reveal=reveal) for one in claims],
+        "tests": [_claim_view(one, terms) for one in claims],
         "matches": list(dict.fromkeys(mistake.tag for one in claims for mistake in one.mistakes)),
-        "feedback": " ".join(dict.fromkeys(one.feedback for one in claims)) or FEEDBACK["unreadable"],
+        "feedback": judged.feedback(terms.language),
     }
 
 
@@ -32,17 +34,20 @@ def _fault_view(fault: InvalidParameter, within: Path) -> Result:
     return entry | {"remedy": fault.remedy} if fault.remedy else entry
 
 
-def _claim_view(judged: JudgedClaim, *, reveal: bool) -> Result:
+def _claim_view(judged: JudgedClaim, terms: Terms) -> Result:
     judgement = judged.judgement
     result: Result = {
         "pointer": judged.pointer,
         "verdict": judgement.verdict,
         "correct": judgement.correct,
         "score": judged.score,
-        "matches": [{"tag": one.tag, "credit": one.credit, "feedback": one.feedback} for one in judged.mistakes],
-        "feedback": judged.feedback,
+        "matches": [
+            {"tag": one.tag, "credit": one.credit, "feedback": Sentence(one.tag).text(terms.language)}
+            for one in judged.mistakes
+        ],
+        "feedback": text(judged.sentences, terms.language),
     }
-    if reveal:
+    if terms.reveal:
         result["error"] = {
             "absolute": judgement.absolute,
             "relative": judgement.relative,

@@ -1,8 +1,10 @@
-"""What is found about samples of a motion that are not right, with sentences for who submitted them."""
+"""What is found about samples of a motion that are not right, with the feedback on them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from core.assessment.feedback.languages import Sentence
 
 
 @dataclass(frozen=True)
@@ -36,15 +38,14 @@ class SampleErrors:
     separatrix_crossed: float | None
 
     @property
-    def sentence(self) -> str:
-        """Since when the samples are wrong, for who submitted them; empty if they are from the start."""
+    def sentence(self) -> Sentence | None:
+        """The time from which the samples are wrong; None if that is the start."""
         if self.within_until is None or self.within_until == 0.0:
-            return ""
-        until = f"The samples are right until t = {self.within_until:.3g} s"
+            return None
         crossed = self.separatrix_crossed
         if crossed is not None and abs(crossed) >= abs(self.within_until):
-            return f"{until}, then lost at the separatrix: from t = {crossed:.3g} s they circle another axis."
-        return f"{until}."
+            return Sentence("samples-separatrix", {"until": self.within_until, "crossed": crossed})
+        return Sentence("samples-until", {"until": self.within_until})
 
 
 @dataclass(frozen=True)
@@ -69,12 +70,10 @@ class Consistent:
     unexplained: float
 
     @property
-    def sentence(self) -> str:
-        """What the samples are, for who submitted them."""
+    def sentence(self) -> Sentence:
+        """The method that the samples come from."""
         if self.tolerance is not None:
-            return (
-                f"The samples are those of an adaptive method ({self.method}) at a tolerance of {self.tolerance:.0e}."
-            )
+            return Sentence("samples-of-solver", {"method": self.method, "tolerance": self.tolerance})
         if self.step is not None:
-            return f"The samples are those of {self.method} with a step of {self.step:.6g} s."
-        return "The samples are right to the digits that they have, which are fewer than the tolerance needs."
+            return Sentence("samples-of-method", {"method": self.method, "step": self.step})
+        return Sentence("samples-rounded")

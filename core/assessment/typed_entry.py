@@ -11,7 +11,8 @@ import re
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from core.errors import InvalidParameter
+from core.assessment.feedback.entry_fault import EntryFault
+from core.assessment.feedback.languages import Sentence
 
 Locale = Literal["de", "en", "es", "fr"]
 LOCALES: tuple[Locale, ...] = get_args(Locale)
@@ -67,13 +68,13 @@ def typed_entry(text: str, locale: Locale | None = None) -> TypedEntry:
 
     Raises
     ------
-    InvalidParameter
+    EntryFault
         For an empty entry, and for a number that can be read in two ways, with both in the remedy.
     """
     entry = re.sub(r"(?<=10)[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda raised: f"^{raised[0].translate(_RAISED)}", text)
     entry = entry.translate(_SIGNS).strip()
     if not entry:
-        raise InvalidParameter((), "not be empty")
+        raise EntryFault((), "not be empty", sentence=Sentence("entry-empty"))
     if entry.lower() in _WORDS:
         return TypedEntry(_WORDS[entry.lower()])
     if entry.startswith("["):
@@ -116,12 +117,14 @@ def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str | None]:
             read = None
         if isinstance(read, list):
             return read, unit
-        raise InvalidParameter((), "be a list such as [1.5, 2, 3]", remedy="with decimal commas: [1,5; 2; 3]")
+        remedy = "with decimal commas: [1,5; 2; 3]"
+        raise EntryFault((), "be a list such as [1.5, 2, 3]", remedy=remedy, sentence=Sentence("list-malformed"))
     found = []
     for part in inside.strip("[]").split(";"):
         number = _leading_number(part.strip(), locale)
         if number is None or number[1]:
-            raise InvalidParameter((), "be a list of numbers such as [1,5; 2; 3]")
+            sentence = Sentence("list-malformed")
+            raise EntryFault((), "be a list of numbers such as [1,5; 2; 3]", sentence=sentence)
         found.append(number[0])
     return found, unit
 
@@ -139,15 +142,18 @@ def _plain(digits: str, locale: Locale | None) -> str:
         decimal = digits.count(last) == 1
         groups = (whole if decimal else digits).split(other if decimal else last)
         if not _grouped(groups):
-            raise InvalidParameter((), "be a number with one decimal mark, and groups of three digits if any")
+            rule = "be a number with one decimal mark, and groups of three digits if any"
+            raise EntryFault((), rule, sentence=Sentence("number-malformed"))
         return "".join(groups) + (f".{part}" if decimal else "")
     if _grouped([whole, part]) and not _is_decimal(last, locale):
         if last == "," and locale == "en":
             return whole + part
-        raise InvalidParameter(
+        readings = {"digits": digits, "whole": whole + part, "decimal": f"{whole}.{part}", "padded": f"{digits}0"}
+        raise EntryFault(
             (),
             f"be a number that can be read in one way: {digits} may be {whole}{part} or {whole}.{part}",
             remedy=f"write {whole}{part} or {digits}0",
+            sentence=Sentence("number-ambiguous", readings),
         )
     return f"{whole}.{part}"
 

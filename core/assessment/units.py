@@ -14,7 +14,8 @@ from functools import cache, lru_cache
 from math import isfinite, pi
 from typing import Any
 
-from core.errors import InvalidParameter
+from core.assessment.feedback.entry_fault import EntryFault
+from core.assessment.feedback.languages import Sentence
 from core.work import spend
 
 LONGEST_UNIT = 40
@@ -22,6 +23,19 @@ LONGEST_UNIT = 40
 
 IMPORT = 1_000_000
 """Units of work (`core.work`) that importing pint counts for: it takes about a second, once in each process."""
+
+MALFORMED, UNKNOWN, OTHER_KIND, MILLISECOND, WITH_OFFSET, SIZE = (
+    f"unit-{what}" for what in ("malformed", "unknown", "other-kind", "millisecond", "with-offset", "size")
+)
+RULES: Mapping[str, str] = {
+    MALFORMED: "be a product of powers of units",
+    UNKNOWN: "be a known unit",
+    OTHER_KIND: "measure the same kind of quantity",
+    MILLISECOND: "measure the same kind of quantity",
+    WITH_OFFSET: "be a unit of which multiples can be added",
+    SIZE: "be of moderate size",
+}
+"""What a unit must be, by the key of the feedback on it."""
 
 _PLAIN = re.compile(r"[\w°%µμ·*/^()²³⁻¹. +-]+")
 _POWER = re.compile(r"(?<=[\w)°%µμ])\s*(?:\^|\*\*)\s*(?:-?[1-9]|\(-?[1-9]\))(?!\s*(?:\d|\.|\^|\*\*))")
@@ -51,22 +65,23 @@ def factor(given: str, unit: str) -> float:
 
     Raises
     ------
-    InvalidParameter
+    EntryFault
         If the unit is not known, or measures another kind of quantity.
     """
     if given == unit:
         return 1.0
     if len(given) > LONGEST_UNIT:
-        raise InvalidParameter("unit", f"have at most {LONGEST_UNIT} characters")
+        raise EntryFault("unit", f"have at most {LONGEST_UNIT} characters", sentence=Sentence(MALFORMED))
     found = _factor(given, unit)
     if isinstance(found, float):
         return found
-    raise InvalidParameter("unit", found[0], remedy=found[1])
+    key, remedy = found
+    raise EntryFault("unit", RULES[key], remedy=remedy, sentence=Sentence(key))
 
 
 @lru_cache(4096)
 def _factor(given: str, unit: str) -> float | tuple[str, str]:
-    """Return the factor, or the rule that is broken and its remedy."""
+    """Return the factor, or the key of the rule that is broken and the remedy."""
     own = _powers(given)
     if own is not None and own == _powers(unit):
         return 1.0
@@ -126,24 +141,24 @@ def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     # A text that is none of a unit's is not given to the parser, and numbers are nothing but powers of one digit: the
     # parser would work out 9**9**9.
     if not _PLAIN.fullmatch(given) or _NUMBER.search(_POWER.sub("", _RECIPROCAL.sub("/", given, count=1))):
-        return "be a product of powers of units", remedy
+        return MALFORMED, remedy
     try:
         parsed = _parsed(registry, given)
         quantity = registry.Quantity(1.0, parsed)
         reference = registry.parse_units("" if unit == "1" else unit)
     except Exception:
         # The parser has no error of its own for everything that is no unit.
-        return "be a known unit", remedy
+        return UNKNOWN, remedy
     powers = dict(quantity.unit_items())
     angular = any(name.endswith(_ANGLES) for name in powers)
     if parsed.dimensionality != reference.dimensionality or (unit == "1" and angular):
         if _MILLISECOND.search(given) and {"m", "s"} <= set(re.findall("[a-z]+", unit)):
-            remedy += "; ms is a millisecond, and metres times seconds are m s"
-        return "measure the same kind of quantity", remedy
+            return MILLISECOND, f"{remedy}; ms is a millisecond, and metres times seconds are m s"
+        return OTHER_KIND, remedy
     try:
         value = float(quantity.to(reference).magnitude)
     except Exception:
-        return "be a unit of which multiples can be added", remedy
+        return WITH_OFFSET, remedy
     if "rad" in unit.split():
         value *= (2.0 * pi) ** sum(power for name, power in powers.items() if name.endswith("hertz"))
-    return value if isfinite(value) and value > 0.0 else ("be of moderate size", remedy)
+    return value if isfinite(value) and value > 0.0 else (SIZE, remedy)

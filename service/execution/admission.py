@@ -100,7 +100,9 @@ class Compute:
         finally:
             self._held -= memory
 
-    async def answer(self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender) -> Document:
+    async def answer(
+        self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender, *, later: bool = False
+    ) -> Document:
         """Return the answer to a request, read, computed and composed in other processes.
 
         Parameters
@@ -109,6 +111,8 @@ class Compute:
             Whether the body is a numpy archive.
         media : str or None
             Media type of the document, None for JSON.
+        later : bool
+            Whether the request is only read, and the plan of a study of one answer returned.
 
         Raises
         ------
@@ -123,6 +127,8 @@ class Compute:
             raise Refusal("not-ready", "the compute processes are not up yet", retry_after=1.0)
         with self.holding(len(body)):
             self._require_turn(sender)
+            if later:
+                return await self._done(Task(route.path, body, npz, media, later=True), sender)
             for attempt in range(len(route.in_short)):
                 with contextlib.suppress(SliceUsed):
                     return await self._done(Task(route.path, body, npz, media, attempt), sender, may_be_long=False)

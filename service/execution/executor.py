@@ -29,7 +29,9 @@ class Executor:
         self._handler, self._compute, self._metrics = handler, compute, metrics
         self._bytes, self._work = settings.inline_bytes, settings.inline_work
 
-    async def answer(self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender) -> Document:
+    async def answer(
+        self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender, *, later: bool = False
+    ) -> Document:
         """Return the answer to a request; parameters and errors are those of `Compute.answer`."""
         if sender.key is not None:
             # What it costs is charged when that is known; who has debts is refused.
@@ -37,7 +39,7 @@ class Executor:
         if not npz and len(body) <= self._bytes:
             since = perf_counter()
             try:
-                document = self.answer_inline(route, body, media)
+                document = self.answer_inline(route, body, media, later=later)
             finally:
                 seconds = perf_counter() - since
                 if sender.key is not None:
@@ -50,15 +52,19 @@ class Executor:
                     )
             if document is not None:
                 return document
-        return await self._compute.answer(route, body, npz, media, sender)
+        return await self._compute.answer(route, body, npz, media, sender, later=later)
 
-    def answer_inline(self, route: PostRoute, body: bytes, media: str | None = None) -> Document | None:
+    def answer_inline(
+        self, route: PostRoute, body: bytes, media: str | None = None, *, later: bool = False
+    ) -> Document | None:
         """Return the answer to a small JSON request, None for one that belongs into a compute process.
 
         Parameters
         ----------
         media : str or None
             Media type of the document, None for JSON.
+        later : bool
+            As in `Compute.answer`.
 
         Raises
         ------
@@ -68,6 +74,8 @@ class Executor:
         try:
             with work_limit(self._work):
                 question = self._handler.read(route, body)
+                if later:
+                    return composed(route, self._handler.study_of_one(route, question), None)
                 if not route.small(question):
                     return None
                 return composed(route, self._handler.answer(route, question), media)

@@ -38,6 +38,14 @@ class RequestHandler:
         """Return the whole answer: signature, warnings, fields; from the second attempt on by `PostRoute.in_short`."""
         return signed((route.handle, *route.in_short)[attempt](question, self._budget))
 
+    def study_of_one(self, route: PostRoute, question: Any) -> Answer:
+        """Return the plan of a study in which nothing varies, or raise `BudgetExceeded`.
+
+        What its answer takes is not known before (`bytes`).
+        """
+        plan = {"path": route.path, "count": 1, "together": False, "seconds": self.price(route, question), "bytes": 0}
+        return plan | {name: [] for name in ("shape", "inputs", "figures")}
+
     def warm(self, *, scenes_first: bool = False) -> None:
         """Have every kernel that can be reached compiled or loaded, so that no client waits for that.
 

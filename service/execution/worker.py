@@ -66,6 +66,8 @@ class Task:
         Media type of the document, None for JSON.
     attempt : int
         How many attempts have used more than the slice of the short class.
+    later : bool
+        Whether the answer is computed in the background; the reply is the plan of a study of one answer.
     """
 
     path: str
@@ -73,6 +75,7 @@ class Task:
     npz: bool
     media: str | None
     attempt: int = 0
+    later: bool = False
 
 
 @dataclass(frozen=True)
@@ -120,6 +123,8 @@ def answer(terms: Terms, task: Task) -> Document | Problem | Failed:
     route, handler = _routes(terms.table)[task.path], handler_of(terms)
     try:
         question = handler.read(route, task.body, npz=task.npz)
+        if task.later:
+            return composed(route, handler.study_of_one(route, question), None)
         # Refuses what exceeds the budget.
         handler.price(route, question)
         return composed(route, handler.answer(route, question, task.attempt), task.media)

@@ -33,8 +33,12 @@ _NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), VARY
 _VERSION = VERSION.encode()
 
 
-Submit = Callable[[RequestContext, bytes, bytes], Awaitable[None]]
-"""Stores a study, given its request and its plan, and answers."""
+_RESPOND_ASYNC = b"respond-async"
+_APPLIED: Header = (b"preference-applied", _RESPOND_ASYNC)
+"""RFC 7240, 3 and 4.1."""
+
+Submit = Callable[[RequestContext, bytes, bytes, tuple[Header, ...]], Awaitable[None]]
+"""Stores a study, given its request and its plan, and answers, with some headers more."""
 
 
 class Dispatcher:
@@ -61,6 +65,8 @@ class Dispatcher:
         starting: Callable[[], bool] = lambda: False,
     ) -> None:
         self._submit, self._starting = submit, starting
+        studies = (route for route in routes if isinstance(route, StudyRoute))
+        self._later: frozenset[str] = frozenset().union(*(route.paths for route in studies))
         self._compute, self._metrics, self._settings, self._keys = compute, metrics, settings, keys
         self._executor = Executor(answering, compute, metrics, settings)
         self._turns = asyncio.Lock()
@@ -127,6 +133,9 @@ class Dispatcher:
             media = negotiated(accept, ("application/json", *route.representations, archive.MEDIA_TYPE))
             media = None if media == "application/json" else media
         body = await self.bodies.read(context.receive, headers)
+        if route.path in self._later and media is None and not npz and _preferred(headers):
+            await self._question_later(route, context, body)
+            return
         answer = self._cache.get(route.path, body) if media is None else None
         if answer is not None:
             self._metrics.cache_hits.inc()
@@ -151,6 +160,13 @@ class Dispatcher:
             self._cache.put(route.path, body, answer)
         await context.answer(answer)
 
+    async def _question_later(self, route: PostRoute, context: RequestContext, body: bytes) -> None:
+        """Answer with the state of a study of one answer, once the request has been read."""
+        sender = Sender(context.client, context.key, context.gone)
+        plan = await self._executor.answer(route, body, False, None, sender, later=True)
+        assert self._submit is not None
+        await self._submit(context, body, plan.whole(), (_APPLIED,))
+
     async def _study(self, route: StudyRoute, context: RequestContext) -> None:
         """Answer the request of a study with its plan, in thought, and then store it."""
         if self._keys is not None:
@@ -162,7 +178,7 @@ class Dispatcher:
         sender = Sender(context.client, context.key, context.gone)
         plan = await self._executor.answer(route, body, False, None, sender)
         assert self._submit is not None
-        await self._submit(context, body, plan.whole())
+        await self._submit(context, body, plan.whole(), ())
 
     async def _stream(
         self, document: Document, etag: bytes, context: RequestContext, headers: Sequence[Header] = (JSON,)
@@ -199,6 +215,12 @@ class Dispatcher:
             detail = f"there is nothing at this path; {meant}GET /openapi.json lists every path"
             problem = Problem(REGISTRY["not-found"], detail)
         await context.problem(problem)
+
+
+def _preferred(headers: Mapping[bytes, bytes]) -> bool:
+    """Return whether the answer is preferred later, as a study of one."""
+    preferences = headers.get(b"prefer", b"").lower().replace(b";", b",").split(b",")
+    return _RESPOND_ASYNC in (each.strip() for each in preferences)
 
 
 def _leads_to(template: str, path: str) -> bool:

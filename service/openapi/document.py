@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
@@ -43,6 +43,14 @@ Refusals are application/problem+json (RFC 9457) with a stable code and JSON poi
 _PROBLEMS_OF_QUESTIONS = (400, 401, 406, 408, 413, 415, 422, 429, 500, 501, 503)
 
 _PROBLEMS_OF_RESOURCES = (401, 404, 406, 422, 429, 500, 503)
+
+PREFER = {
+    "name": "Prefer",
+    "in": "header",
+    "required": False,
+    "description": "respond-async: the answer is computed in the background and is the result of a study.",
+    "schema": {"type": "string", "title": "Prefer"},
+}
 
 PACKED = {
     "type": "string",
@@ -104,9 +112,10 @@ def openapi(routes: Sequence[Route]) -> dict[str, Any]:
     """Return the OpenAPI document."""
     shown = [route for route in routes if isinstance(route, PostRoute) or route.documented]
     schemas, named = _schemas(shown)
+    later = {path for route in shown if isinstance(route, StudyRoute) for path in route.paths}
     paths: dict[str, Any] = {}
     for route in shown:
-        paths.setdefault(route.path, {})[route.method.lower()] = _operation(route, schemas)
+        paths.setdefault(route.path, {})[route.method.lower()] = _operation(route, schemas, later)
     problem = ProblemDocument.model_json_schema(ref_template=components.PREFIX + "{model}")
     document: dict[str, Any] = {
         "openapi": "3.1.0",
@@ -166,8 +175,8 @@ def _types(route: Route) -> Iterator[tuple[str, Any]]:
         yield "answer", route.answer
 
 
-def _operation(route: Route, schemas: Mapping[Place, Any]) -> dict[str, Any]:
-    """Return an operation of the document."""
+def _operation(route: Route, schemas: Mapping[Place, Any], later: Collection[str]) -> dict[str, Any]:
+    """Return an operation of the document; `later` are the paths of what may be answered in the background."""
     found: dict[str, Any] = {"tags": [route.tag], "summary": route.summary}
     if route.description:
         found["description"] = route.description
@@ -192,6 +201,13 @@ def _operation(route: Route, schemas: Mapping[Place, Any]) -> dict[str, Any]:
             "content": dict(_representations(route, schemas.get((route.operation_id, "answer"), {}))),
         }
     }
+    if isinstance(route, PostRoute) and route.path in later:
+        found["parameters"] = [PREFER]
+        state = {"$ref": components.PREFIX + "StudyState"}
+        found["responses"]["202"] = {
+            "description": "With Prefer: respond-async, the state of a study of one answer.",
+            "content": {"application/json": {"schema": state}},
+        }
     for status in _problems_of(route):
         found["responses"][str(status)] = {"$ref": f"#/components/responses/{_response_name(status)}"}
     if asked:

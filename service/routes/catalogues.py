@@ -11,6 +11,7 @@ import orjson
 from pydantic import Field
 
 from core.assessment.catalogue import MISTAKES
+from core.assessment.feedback.languages import LANGUAGES, Language, Sentence
 from core.multibody.undecided import UNDECIDED, Code
 from core.quantities import members_of
 from core.systems.accuracy import record
@@ -90,7 +91,7 @@ class MistakeEntry(View):
 
     tag: str = Field(description="Stable name for machines.")
     summary: str = Field(description="What was done.")
-    feedback: str = Field(description="For who made the mistake; it gives no number.")
+    feedback: dict[Language, str] = Field(description="For who made the mistake, by language; it gives no number.")
     credit: Ratio[float] = Field(description="Share of the score, unless the assessment's credits change it.")
 
 
@@ -102,8 +103,15 @@ class MistakeCatalogue(Signed):
 
 def mistakes() -> list[dict[str, Any]]:
     """Return the catalogue of recognised mistakes as it is published."""
-    names = ("tag", "summary", "feedback", "credit")
-    return [{name: getattr(entry, name) for name in names} for entry in MISTAKES]
+    return [
+        {
+            "tag": entry.tag,
+            "summary": entry.summary,
+            "feedback": {language: Sentence(entry.tag).text(language) for language in LANGUAGES},
+            "credit": entry.credit,
+        }
+        for entry in MISTAKES
+    ]
 
 
 def undecided() -> list[dict[str, Any]]:

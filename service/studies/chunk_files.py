@@ -31,6 +31,7 @@ class Chunk(NamedTuple):
     warnings: np.ndarray[Any, Any]
     failure_names: tuple[str, ...]
     warning_names: tuple[str, ...]
+    answer: bytes = b""
 
     @property
     def stop(self) -> int:
@@ -56,7 +57,8 @@ def unpacked(data: bytes) -> Chunk:
             rest: dict[str, Any] = json.loads(file[archive.METADATA] if archive.METADATA in file.files else b"")
             inputs, figures, failures, warnings = (file[name] for name in ARRAYS)
             names = tuple(rest["failure_names"]), tuple(rest["warning_names"])
-            return Chunk(rest["start"], inputs, figures, failures, warnings, *names)
+            answer = file["answer"].tobytes() if "answer" in file.files else b""
+            return Chunk(rest["start"], inputs, figures, failures, warnings, *names, answer)
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as fault:
         raise CorruptedChunk(str(fault)) from None
 

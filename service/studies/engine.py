@@ -23,6 +23,7 @@ from service.observability.logs import LOG
 from service.problems import Refusal
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
 from service.studies.cluster import Cluster
+from service.studies.one_answer import compute_answer
 from service.studies.store import Store, reason_of
 from service.studies.study import FAILED
 from service.studies.summary import summary
@@ -47,15 +48,24 @@ GATHERING = 60.0
 ENDING = 10.0
 """Seconds in which a process that is ended must have gone."""
 
+OVERDUE = "deadline-exceeded"
+
 PAUSE = 2.0
 """Seconds after which something is tried again that failed for reasons outside of the study."""
 
 
 class Engine:
-    """Works on the studies in a store."""
+    """Works on the studies in a store.
 
-    def __init__(self, store: Store, files: ChunkFiles, cluster: Cluster, terms: Terms, longest: float) -> None:
-        self._store, self._files, self._cluster, self._terms, self._longest = store, files, cluster, terms, longest
+    `longest` and `longest_answer` are the times that a stretch of members and a whole answer may take beyond what is
+    predicted (s).
+    """
+
+    def __init__(
+        self, store: Store, files: ChunkFiles, cluster: Cluster, terms: Terms, longest: float, longest_answer: float
+    ) -> None:
+        self._store, self._files, self._cluster, self._terms = store, files, cluster, terms
+        self._longest, self._longest_answer = longest, longest_answer
         self._unfinished: dict[str, UnfinishedStudy] = {}
         self._done: SimpleQueue[Any] = SimpleQueue()
         self._processes, self._counted = 0, 0.0
@@ -105,7 +115,9 @@ class Engine:
                 each = max(study.plan["seconds"] / study.count, FASTEST)
                 missing = deque(gaps(stored, study.count))
                 request = self._store.request(identity)
-                self._unfinished[identity] = UnfinishedStudy(study, missing, each, request, tried=bool(stored))
+                # Of one answer, the trial would be all of the work.
+                tried = bool(stored) or study.whole
+                self._unfinished[identity] = UnfinishedStudy(study, missing, each, request, tried=tried)
                 self._store.begin(identity)
                 LOG.info("a study is worked on", extra={"study": identity, "members": study.count, "done": study.done})
 
@@ -151,7 +163,10 @@ class Engine:
                 unfinished.tried = True
                 self._hand(unfinished, TRIAL, trial, self._longest)
         for _ in range(AHEAD * self._processes - busy):
-            waiting = [one for one in self._unfinished.values() if one.missing]
+            # A whole answer holds its process to its end: members of studies keep half of the processes.
+            answers = sum(len(one.in_flight) for one in self._unfinished.values() if one.study.whole)
+            full = answers >= max(1, self._processes // 2)
+            waiting = [one for one in self._unfinished.values() if one.missing and not (full and one.study.whole)]
             if not waiting:
                 return
             unfinished = min(waiting, key=lambda one: len(one.in_flight))
@@ -160,10 +175,13 @@ class Engine:
     def _submit(self, unfinished: UnfinishedStudy, stretch: Stretch) -> None:
         # A process that others hold up comes back in time nevertheless.
         longest = 2.0 * stretch_seconds(self._processes)
-        self._hand(unfinished, stretch, compute, *stretch, longest)
+        if unfinished.study.whole:
+            self._hand(unfinished, stretch, compute_answer, unfinished.study.plan["path"])
+        else:
+            self._hand(unfinished, stretch, compute, *stretch, longest)
 
     def _hand(
-        self, unfinished: UnfinishedStudy, stretch: Stretch, work: Callable[..., object], *arguments: float
+        self, unfinished: UnfinishedStudy, stretch: Stretch, work: Callable[..., object], *arguments: object
     ) -> None:
         future = self._cluster.client.submit(work, self._terms, unfinished.request, *arguments, pure=False)
         unfinished.in_flight[future] = stretch, time.monotonic()
@@ -216,6 +234,8 @@ class Engine:
         unfinished.ended += 1
         if unfinished.ended > MOST_ENDED:
             self._fail(unfinished, f"its members ended {unfinished.ended} processes")
+        elif unfinished.study.whole and (self._alone or code == OVERDUE):
+            self._fail(unfinished, f"{code}: the process that computed the answer was ended")
         elif not self._alone:
             unfinished.suspects.append(stretch)
         elif stop - start > 1:
@@ -234,9 +254,14 @@ class Engine:
 
     def _keep(self, unfinished: UnfinishedStudy, stretch: Stretch, found: Computed) -> None:
         start, stop = stretch[0], stretch[0] + found.members
+        if found.reason:
+            self._fail(unfinished, found.reason)
+            return
         try:
             self._files.write(unfinished.study.id, start, stop, found.data)
             self._store.add_chunk(unfinished.study.id, start, stop, found.failed, found.seconds)
+            if unfinished.study.whole:
+                self._store.note_bytes(unfinished.study.id, len(found.data))
         except Exception as fault:
             # A full disk, most often: the members are computed again when there is room.
             unfinished.missing.appendleft(stretch)
@@ -254,7 +279,8 @@ class Engine:
         for unfinished in [*self._unfinished.values()]:
             for future, (stretch, since) in [*unfinished.in_flight.items()]:
                 expected = unfinished.each * (stretch[1] - stretch[0])
-                if now - since <= AHEAD * (self._longest + 20.0 * expected):
+                longest = self._longest_answer if unfinished.study.whole else self._longest
+                if now - since <= AHEAD * (longest + 20.0 * expected):
                     continue
                 client = self._cluster.client
                 busy = _processes_with({future.key}, client)
@@ -265,7 +291,7 @@ class Engine:
                 del unfinished.in_flight[future]
                 client.cancel([future], force=True)
                 self._end_processes(busy)
-                self._after_death(unfinished, stretch, "deadline-exceeded")
+                self._after_death(unfinished, stretch, OVERDUE)
 
     def _finish(self, unfinished: UnfinishedStudy) -> None:
         """Have the statistics formed, beside what other studies compute; damaged stretches are computed again."""

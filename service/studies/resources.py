@@ -117,8 +117,10 @@ class Studies:
             ),
         )
 
-    async def submit(self, context: RequestContext, body: bytes, plan: bytes) -> None:
-        """Record a study whose plan is known, and answer with its state."""
+    async def submit(
+        self, context: RequestContext, body: bytes, plan: bytes, headers: tuple[tuple[bytes, bytes], ...]
+    ) -> None:
+        """Record a study whose plan is known, and answer with its state, with some headers more."""
         known = orjson.loads(plan)
         seconds, limit = known["seconds"], self._settings.max_study_seconds
         if seconds > limit:
@@ -140,7 +142,7 @@ class Studies:
         await run_in_daemon_thread(self._supervisor.ensure)
         study = await self._own(context, identity)
         location = f"{PATH}/{identity}".encode()
-        await self._send(context, signed(state_of(study)), 202, ((b"location", location),))
+        await self._send(context, signed(state_of(study)), 202, ((b"location", location), *headers))
 
     async def list_all(self, context: RequestContext) -> None:
         """Answer with the client's studies."""
@@ -177,10 +179,14 @@ class Studies:
             detail = f"the study is {study.status}"
             raise Refusal("results-not-ready", detail, retry_after=1.0 if study.unfinished else None)
         accept = context.headers.get(b"accept", b"*/*")
-        media = negotiated(accept, tuple(REPRESENTATIONS))
+        media = negotiated(accept, (JSON_TYPE,) if study.whole else tuple(REPRESENTATIONS))
         try:
             found = await self._in_thread(lambda: Results(study, self._store, self._supervisor.files()))
-            if media == JSON_TYPE:
+            if study.whole:
+                refuse_parameters(parameters_of(context.scope), "must be left out: the result is one answer")
+                pieces = _stored(found.answer())
+                await context.stream_made_elsewhere(pieces, media.encode(), self._settings.stalled_seconds)
+            elif media == JSON_TYPE:
                 await self._page(context, study, found)
             else:
                 refuse_parameters(parameters_of(context.scope), f"must be left out: {media} has all members")

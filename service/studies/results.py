@@ -38,7 +38,7 @@ class Results:
         for missing, _ in gaps(self._stretches, study.count):
             store.drop_chunk(study.id, missing)
             raise CorruptedChunk("some results are not recorded")
-        self.request = json.loads(store.request(study.id))
+        self.request: Any = None if study.whole else json.loads(store.request(study.id))
 
     def chunks(self, start: int = 0, stop: int | None = None) -> Iterator[Chunk]:
         """Yield the results of some members, in member order.
@@ -57,6 +57,11 @@ class Results:
                     self._store.drop_chunk(self.study.id, low)
                     raise
                 yield _part(chunk, max(low, start), min(high, stop))
+
+    def answer(self) -> Iterator[bytes]:
+        """Yield the whole answer of a study of one member."""
+        for chunk in self.chunks():
+            yield chunk.answer
 
     def page(self, start: int, stop: int) -> dict[str, Any]:
         """Return the columns of some members."""

@@ -50,7 +50,7 @@ def main() -> None:
     store, files = Store(folder), ChunkFiles(settings.studies_results or str(folder / "studies"))
     engine = Engine(
         store, files, Cluster(settings, folder / "scratch"), terms_of(settings, table),
-        settings.deadline_seconds,
+        settings.deadline_seconds, settings.answer_seconds,
     )  # fmt: skip
     work(engine, stopped, settings.study_idle_seconds)
     threading.Thread(target=_end_in_any_case, daemon=True).start()

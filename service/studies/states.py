@@ -33,7 +33,8 @@ def state_of(study: Study) -> dict[str, Any]:
     now, address = time.time(), f"{PATH}/{study.id}"
     links = [("self", address, JSON_TYPE), ("events", f"{address}/events", "text/event-stream")]
     if study.status == SUCCESSFUL:
-        links.extend(("results", f"{address}/results", kind) for kind in _WRITTEN_HERE)
+        kinds = (JSON_TYPE,) if study.whole else _WRITTEN_HERE
+        links.extend(("results", f"{address}/results", kind) for kind in kinds)
     return {
         "jobID": study.id,
         "type": "process",

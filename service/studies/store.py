@@ -167,6 +167,10 @@ class Store:
             )
             connection.execute("COMMIT")
 
+    def note_bytes(self, identity: str, count: int) -> None:
+        """Record what the results of a study take where that was not known before."""
+        self._write("UPDATE studies SET plan = json_set(plan, '$.bytes', ?) WHERE id = ?", (count, identity))
+
     def drop_chunk(self, identity: str, start: int) -> None:
         """Record that the results of a stretch cannot be read; a study that was finished goes on."""
         with self._connected() as connection:

@@ -50,6 +50,11 @@ class Study:
         return int(self.plan["count"])
 
     @property
+    def whole(self) -> bool:
+        """Whether its result is one whole answer, and not figures of members."""
+        return not self.plan["figures"]
+
+    @property
     def unfinished(self) -> bool:
         """Whether there is something left to do."""
         return self.status in UNFINISHED

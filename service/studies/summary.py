@@ -28,6 +28,8 @@ def summary(study: Study, sent: bytes, chunks: Callable[[], Iterator[Chunk]]) ->
     chunks : callable
         Yields the results in member order, each time that it is called.
     """
+    if study.whole:
+        return {"figures": {}}
     request = json.loads(sent)
     settings = {name: request[name] for name in ("probabilities", "bins") if name in request}
     wanted = request.get("statistics")

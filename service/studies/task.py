@@ -34,12 +34,15 @@ class Computed(NamedTuple):
         Members that have no result but a problem.
     seconds : float
         Processor time.
+    reason : str
+        Why a study of one whole answer has none; see `service.studies.one_answer`.
     """
 
     data: bytes
     members: int
     failed: int
     seconds: float
+    reason: str = ""
 
 
 def compute(terms: Terms, request: bytes, start: int, stop: int, seconds: float = inf) -> Computed:

@@ -119,7 +119,7 @@ def test_results_are_those_of_the_service(results: dict[str, Any], name: str) ->
         ({"value": 6280.6, "unit": "ms"}, "correct"),
         ({"value": 6.2806}, "missing-unit"),
         ({"value": 12.5612806, "unit": "s"}, "incorrect"),
-        ({"formula": "2*pi*1.0/0.5"}, "incorrect"),
+        ({"formula": "2*pi*1.0/0.5"}, "missing-unit"),
     ],
 )
 def test_submissions_that_were_not_there_are_graded(bundle: Path, claim: Any, verdict: str) -> None:

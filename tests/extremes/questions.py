@@ -414,7 +414,7 @@ def variants() -> Named:
             {"min": max(small, 1e-300), "max": min(large, 1e300), "digits": 1},
             {"values": [0.0, small, large]},
         )
-        # Each question in the next of the ranges: five draws of each cost as much as all else in this module.
+        # Each question in the next of the ranges: more draws of each cost as much as all else in this module.
         # The condition of each figure is found by many answers, of which those at the farthest times are the dearest.
         near = [(name, question) for name, question in asked() if not name.endswith(f"at {LARGEST:g}")]
         for (name, question), vary in zip(near[:: 3 * share], cycle(ranges), strict=False):
@@ -426,7 +426,7 @@ def variants() -> Named:
                         "vary": {pointer: vary},
                         "seed": 0,
                         "count": 2,
-                        "draws": 5,
+                        "draws": 2,
                     },
                 )
 

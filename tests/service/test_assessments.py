@@ -472,7 +472,7 @@ TENSION = "g*(sin(alpha)+sin(beta))*M_1*M_2/(3*(M_1+M_2))"
         (TENSION.replace("3*", ""), "incorrect", ["shafts-do-not-turn"]),
         ("-" + TENSION, "incorrect", ["sign"]),
         (TENSION.replace("M_1*M_2", "M_1"), "incorrect", []),
-        ("2.7528003371450764", "incorrect", []),
+        ("2.7528003371450764", "missing-unit", []),
         ("sqrt(-g)", "incorrect", []),
     ],
 )
@@ -581,7 +581,7 @@ async def test_a_formula_that_cannot_be_judged_says_what_to_do(reveal: bool) -> 
     right, unclear, wrong_too = (one["tests"][0] for one in answer["results"])
     assert (right["verdict"], wrong_too["verdict"]) == ("correct", "incorrect")
     assert (unclear["verdict"], unclear["score"]) == ("not-gradable", None)
-    assert unclear["feedback"] == "A formula cannot be judged here. Write the number, with its unit."
+    assert unclear["feedback"] == "A formula cannot be graded here. Give the number with its unit."
     (warning,) = answer["warnings"]
     assert (warning["code"], warning["pointer"]) == ("formulas-not-judged", "/names")
     assert pointer in warning["detail"]

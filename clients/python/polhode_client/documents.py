@@ -2426,6 +2426,8 @@ class AssessmentRequest(TypedDict):
     names: NotRequired[Mapping[str, str] | None]
     credits: NotRequired[Mapping[str, float] | None]
     locale: NotRequired[Literal["de", "en", "es", "fr"] | None]
+    language: NotRequired[Literal["de", "en", "es", "fr"]]
+    steps: NotRequired[Mapping[str, CarriedStep] | None]
     reveal: NotRequired[bool]
 
 
@@ -2483,6 +2485,14 @@ class Data(TypedDict):
     kind: Literal["data"]
 
 
+class CarriedStep(TypedDict):
+    """How a figure follows from earlier figures."""
+
+    formula: str
+    earlier: Mapping[str, str]
+    credit: NotRequired[float]
+
+
 class AssessmentAnswer(TypedDict):
     """Verdicts, in the order of the submissions."""
 
@@ -2516,7 +2526,7 @@ class ClaimResult(TypedDict):
     """What becomes of one claim."""
 
     pointer: str
-    verdict: Literal["correct", "incorrect", "missing-unit", "wrong-unit", "not-gradable", "unreadable"]
+    verdict: Literal["correct", "incorrect", "carried", "missing-unit", "wrong-unit", "not-gradable", "unreadable"]
     correct: bool | None
     score: float | None
     matches: list[RecognisedMistake]
@@ -2919,7 +2929,7 @@ class MistakeEntry(TypedDict):
 
     tag: str
     summary: str
-    feedback: str
+    feedback: dict[str, str]
     credit: float
 
 

@@ -129,30 +129,22 @@ OF_BODIES = (
     Mistake(
         "inertia-about-another-point",
         "The inertia about the origin for that about the centre of mass, or the reverse.",
-        "The moments belong to another point: a free body turns about its centre of mass, wherever the origin is.",
         _about_another_point,
     ),
     Mistake(
-        "parallel-axis", "The term of the parallel axis theorem twice, or with the wrong sign.",
-        "Check the parallel axis theorem: its term is added once, going from the centre of mass to another point.",
-        _parallel_axis_wrong,
+        "parallel-axis", "The term of the parallel axis theorem twice, or with the wrong sign.", _parallel_axis_wrong
     ),
     Mistake(
-        "products-of-inertia-sign", "Products of inertia with the opposite sign.",
-        "Check the signs off the diagonal: I_xy is minus the integral of x y dm.", _products_of_inertia, credit=0.5,
+        "products-of-inertia-sign", "Products of inertia with the opposite sign.", _products_of_inertia, credit=0.5
     ),
     Mistake(
-        "repeated-points-dropped", "Point masses that coincide counted once.",
-        "Every point mass counts, also where two are at one place.",
-        lambda figure: with_body(figure, _distinct_points), credit=0.5,
+        "repeated-points-dropped",
+        "Point masses that coincide counted once.",
+        lambda figure: with_body(figure, _distinct_points),
+        credit=0.5,
     ),
     Mistake(
-        "shell-for-solid", "A thin shell for a solid body, or the reverse.",
-        "Check the shape: the mass is spread through a solid body, and far from the axis of a shell.",
-        lambda figure: with_body(figure, _hollow),
+        "shell-for-solid", "A thin shell for a solid body, or the reverse.", lambda figure: with_body(figure, _hollow)
     ),
-    Mistake(
-        "diameter-for-radius", "A diameter in the place of a radius, or the reverse.",
-        "Check whether each length is a radius or a diameter.", _diameter,
-    ),
-)  # fmt: skip
+    Mistake("diameter-for-radius", "A diameter in the place of a radius, or the reverse.", _diameter),
+)

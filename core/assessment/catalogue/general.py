@@ -70,50 +70,20 @@ def _scalar_last(figure: Figure) -> Iterator[Any]:
 
 
 GENERAL = (
+    Mistake("sign", "The opposite sign.", times(-1.0), credit=0.5),
+    Mistake("factor-2", "Twice the value.", times(2.0)),
+    Mistake("factor-half", "Half the value.", times(0.5)),
+    Mistake("factor-2-pi", "2 pi times the value.", times(2.0 * pi)),
+    Mistake("factor-1-over-2-pi", "The value over 2 pi.", times(0.5 / pi)),
+    Mistake("degrees", "An angle or a rate in degrees.", times(180.0 / pi, "rad", "rad s^-1", "rad s^-2"), credit=0.5),
+    Mistake("rpm", "A rate in revolutions per minute.", times(30.0 / pi, "rad s^-1"), credit=0.5),
+    Mistake("factor-1000", "A power of ten of a prefix: grams, millimetres, milliseconds.", _thousand, credit=0.5),
+    Mistake("squared", "The square.", _square),
+    Mistake("root", "The root of the value.", _root),
+    Mistake("reciprocal", "One over the value.", _reciprocal),
+    Mistake("permuted-axes", "The components in another order.", _permuted, credit=0.5),
     Mistake(
-        "sign", "The opposite sign.",
-        "The size is right; check the sign and the direction that counts as positive.",
-        times(-1.0), credit=0.5,
+        "transposed-rotation", "The rotation from space to body, or the transposed matrix.", _transposed, credit=0.5
     ),
-    Mistake("factor-2", "Twice the value.", "A factor of 2 is too much.", times(2.0)),
-    Mistake("factor-half", "Half the value.", "A factor of 2 is missing.", times(0.5)),
-    Mistake(
-        "factor-2-pi", "2 pi times the value.",
-        "A factor of 2 pi is too much: distinguish turns from radians, and a rate from a frequency.", times(2.0 * pi),
-    ),
-    Mistake(
-        "factor-1-over-2-pi", "The value over 2 pi.",
-        "A factor of 2 pi is missing: distinguish turns from radians, and a rate from a frequency.", times(0.5 / pi),
-    ),
-    Mistake(
-        "degrees", "An angle or a rate in degrees.", "The value is in degrees; angles are in radians.",
-        times(180.0 / pi, "rad", "rad s^-1", "rad s^-2"), credit=0.5,
-    ),
-    Mistake(
-        "rpm", "A rate in revolutions per minute.", "The value is in revolutions per minute.",
-        times(30.0 / pi, "rad s^-1"), credit=0.5,
-    ),
-    Mistake(
-        "factor-1000", "A power of ten of a prefix: grams, millimetres, milliseconds.",
-        "The value is off by a factor of 1000: check the prefixes of the units.", _thousand, credit=0.5,
-    ),
-    Mistake("squared", "The square.", "This is the square of the quantity: take the root.", _square),
-    Mistake("root", "The root of the value.", "This is the root of the quantity.", _root),
-    Mistake(
-        "reciprocal", "One over the value.", "This is one over the quantity: a period is not a frequency.",
-        _reciprocal,
-    ),
-    Mistake(
-        "permuted-axes", "The components in another order.",
-        "The components are right, but stand in another order: axes are those in which the body was given.", _permuted,
-        credit=0.5,
-    ),
-    Mistake(
-        "transposed-rotation", "The rotation from space to body, or the transposed matrix.",
-        "This is the inverse rotation: it has to turn body axes into space axes.", _transposed, credit=0.5,
-    ),
-    Mistake(
-        "scalar-last", "A quaternion with the scalar part at the end.",
-        "The scalar part of a quaternion stands first here.", _scalar_last, credit=0.5,
-    ),
-)  # fmt: skip
+    Mistake("scalar-last", "A quaternion with the scalar part at the end.", _scalar_last, credit=0.5),
+)

@@ -203,96 +203,55 @@ def _slow_precession(figure: Figure) -> Iterator[Any]:
 
 
 OF_ROTATION = (
+    Mistake("space-axes", "The angular velocity in space axes for that in body axes.", _in_space, credit=0.5),
+    Mistake("samples-off-by-one", "Every sample at the time of its neighbour.", _shifted, credit=0.5),
     Mistake(
-        "space-axes", "The angular velocity in space axes for that in body axes.",
-        "The components are those in space; Euler's equations are about components along the body's own axes.",
-        _in_space, credit=0.5,
+        "samples-rate-over-axial-moment",
+        "Samples of a symmetric body that precess at (I3 - I)/I3 w3.",
+        _slow_precession,
+        credit=0.25,
     ),
     Mistake(
-        "samples-off-by-one", "Every sample at the time of its neighbour.",
-        "The samples are right, but each stands at the time of its neighbour.", _shifted, credit=0.5,
+        "time-scaled",
+        "Samples at other times than stated: minutes, milliseconds, turns, twice or half of them.",
+        _time_scaled,
+        credit=0.25,
     ),
     Mistake(
-        "samples-rate-over-axial-moment", "Samples of a symmetric body that precess at (I3 - I)/I3 w3.",
-        "The motion precesses at a wrong rate: the difference of the moments is divided by the transverse moment.",
-        _slow_precession, credit=0.25,
-    ),
-    Mistake(
-        "time-scaled", "Samples at other times than stated: minutes, milliseconds, turns, twice or half of them.",
-        "The motion is right, but runs too fast or too slowly: check the unit of time and factors in the rate.",
-        _time_scaled, credit=0.25,
-    ),
-    Mistake(
-        "period-for-flip-interval", "The period for the interval between flips, or the reverse.",
-        "A flip is half of the motion: after a whole period the body is back.", _either("flip_interval", "period"),
+        "period-for-flip-interval",
+        "The period for the interval between flips, or the reverse.",
+        _either("flip_interval", "period"),
         credit=0.5,
     ),
     Mistake(
-        "body-for-space-rate", "The rate of precession in the body for that in space, or the reverse.",
-        "Two precessions are to be distinguished: of the angular velocity in the body, and of the axis in space.",
+        "body-for-space-rate",
+        "The rate of precession in the body for that in space, or the reverse.",
         _either("body_rate", "space_rate"),
     ),
     Mistake(
         "cones-exchanged",
         "The angle of the axis with the angular velocity for that with the angular momentum, or the reverse.",
-        "Check which two directions the angle is between: angular velocity and angular momentum differ.",
         _either("axis_to_angular_momentum", "axis_to_angular_velocity"),
     ),
+    Mistake("rate-over-axial-moment", "(I3 - I)/I3 w3 for the body rate.", _over_own_moment, credit=0.25),
+    Mistake("moments-exchanged", "The axial and the transverse moment exchanged in the body rate.", _moments_exchanged),
+    Mistake("symmetric-formula", "The period of a symmetric body for one with three different moments.", _as_symmetric),
+    Mistake("ellipticity-root-of-moments", "sqrt(I1/I) for the axis ratio.", _root_of_moments),
+    Mistake("ellipticity-quotient-of-moments", "1/(1 - e) for the axis ratio.", _quotient_of_moments),
     Mistake(
-        "rate-over-axial-moment", "(I3 - I)/I3 w3 for the body rate.",
-        "The difference of the moments is divided by the transverse moment, as Euler's equations for the transverse "
-        "components show.",
-        _over_own_moment, credit=0.25,
-    ),
-    Mistake(
-        "moments-exchanged", "The axial and the transverse moment exchanged in the body rate.",
-        "Check which moment belongs to the axis of symmetry.", _moments_exchanged,
-    ),
-    Mistake(
-        "symmetric-formula", "The period of a symmetric body for one with three different moments.",
-        "The three moments differ: the formula for a symmetric body does not apply.", _as_symmetric,
-    ),
-    Mistake(
-        "ellipticity-root-of-moments", "sqrt(I1/I) for the axis ratio.",
-        "The moments are proportional to 2 a^2 and a^2 + c^2: the axis ratio is not the root of their quotient.",
-        _root_of_moments,
-    ),
-    Mistake(
-        "ellipticity-quotient-of-moments", "1/(1 - e) for the axis ratio.",
-        "The axis ratio is the root of (1 + e)/(1 - e), with e the asymmetry of the moments.", _quotient_of_moments,
-    ),
-    Mistake(
-        "flattening-for-asymmetry", "The flattening for the asymmetry of the moments, or the reverse.",
-        "The flattening belongs to the shape, the asymmetry to the moments of inertia.",
+        "flattening-for-asymmetry",
+        "The flattening for the asymmetry of the moments, or the reverse.",
         _either("flattening", "asymmetry"),
     ),
+    Mistake("solar-for-sidereal-day", "Solar days for sidereal ones, or the reverse.", _other_day, credit=0.5),
+    Mistake("extreme-axis-unstable", "The axis of largest or smallest moment called unstable.", _unstable_extreme),
+    Mistake("middle-axis-stable", "The axis of the middle moment called stable.", _stable_middle),
+    Mistake("real-for-imaginary", "Real and imaginary parts exchanged.", _real_for_imaginary),
     Mistake(
-        "solar-for-sidereal-day", "Solar days for sidereal ones, or the reverse.",
-        "One rotation is a sidereal day.", _other_day, credit=0.5,
+        "euler-second-equation", "(I1 - I3) w1 w3 in the second of Euler's equations.", _second_equation, credit=0.5
     ),
     Mistake(
-        "extreme-axis-unstable", "The axis of largest or smallest moment called unstable.",
-        "About the axes of largest and smallest moment a disturbance stays small.", _unstable_extreme,
+        "derivative-for-state", "w[i+1] = f(w[i]): neither the step nor the previous value.", _derivative_for_state
     ),
-    Mistake(
-        "middle-axis-stable", "The axis of the middle moment called stable.",
-        "About the axis of the middle moment a disturbance grows.", _stable_middle,
-    ),
-    Mistake(
-        "real-for-imaginary", "Real and imaginary parts exchanged.",
-        "Check the sign of the square: it decides whether the eigenvalues are real or imaginary.", _real_for_imaginary,
-    ),
-    Mistake(
-        "euler-second-equation", "(I1 - I3) w1 w3 in the second of Euler's equations.",
-        "Check the signs: Euler's equations follow from each other by cyclic exchange of 1, 2 and 3.", _second_equation,
-        credit=0.5,
-    ),
-    Mistake(
-        "derivative-for-state", "w[i+1] = f(w[i]): neither the step nor the previous value.",
-        "A step of Euler's method adds the step times the derivative to the previous value.", _derivative_for_state,
-    ),
-    Mistake(
-        "step-left-out", "w[i+1] = w[i] + f(w[i]): without the step.",
-        "The derivative has to be multiplied by the step.", _step_left_out, credit=0.5,
-    ),
-)  # fmt: skip
+    Mistake("step-left-out", "w[i+1] = w[i] + f(w[i]): without the step.", _step_left_out, credit=0.5),
+)

@@ -105,60 +105,39 @@ def _inertia_left_out(figure: Figure) -> Iterator[Any]:
 
 OF_SCENES = (
     Mistake(
-        "inertia-left-out", "A pulley without inertia, or a wheel that slides: all moments of inertia left out.",
-        "What turns has a moment of inertia: a pulley with mass has another tension on either side, and what rolls "
-        "moves more slowly than what slides.",
+        "inertia-left-out",
+        "A pulley without inertia, or a wheel that slides: all moments of inertia left out.",
         _inertia_left_out,
     ),
     Mistake(
-        "shafts-do-not-turn", "Point masses on an Atwood machine in place of shafts that turn.",
-        "The shafts turn as the string unwinds, and part of the pull goes into their rotation.",
+        "shafts-do-not-turn",
+        "Point masses on an Atwood machine in place of shafts that turn.",
         with_fields(SHAFTS, inertia_factors=[NO_SPIN, NO_SPIN]),
     ),
+    Mistake("hoop-for-solid-shaft", "The moment of a thin tube for a solid shaft, or the reverse.", _hoop, credit=0.5),
     Mistake(
-        "hoop-for-solid-shaft", "The moment of a thin tube for a solid shaft, or the reverse.",
-        "Check the moment of inertia of the shafts: a solid cylinder and a thin tube differ by a factor.", _hoop,
+        "rod-inertia-about-end",
+        "M l^2/3, the moment of a rod about its end, for that about its centre.",
+        _about_the_end,
         credit=0.5,
-    ),
-    Mistake(
-        "rod-inertia-about-end", "M l^2/3, the moment of a rod about its end, for that about its centre.",
-        "M l^2/3 is the moment of inertia about an end of the rod; the parallel axis theorem starts from its centre.",
-        _about_the_end, credit=0.5,
     ),
     Mistake(
         "rod-depth-and-inertia",
         "The depth of the centre at release by the wrong pair of sides, a potential with unequal dimensions, and the "
         "moment about the end.",
-        "Check the dimensions of the potential energy, the similar triangles that give the depth of the centre at "
-        "release, and about which point the moment of inertia is taken.",
         _similar_triangles,
     ),
     Mistake(
         "rod-depth",
         "The depth of the centre at release by the wrong pair of sides, with the right moment.",
-        "Check the dimensions of the potential energy and the similar triangles that give the depth of the centre.",
-        _energy_alone, credit=0.25,
+        _energy_alone,
+        credit=0.25,
     ),
+    Mistake("rod-without-own-rotation", "The rod's mass at its centre: no moment of its own.", _falling_point),
+    Mistake("masses-exchanged", "The two masses exchanged.", _pairs_exchanged, credit=0.5),
+    Mistake("sine-for-cosine", "The cosine of a slope for its sine, or an angle measured from the vertical.", _cosines),
     Mistake(
-        "rod-without-own-rotation", "The rod's mass at its centre: no moment of its own.",
-        "The rod turns as its centre swings, and its own moment of inertia counts too.", _falling_point,
+        "calculator-in-radians", "Sines of angles in degrees by a calculator set to radians.", _calculator, credit=0.5
     ),
-    Mistake(
-        "masses-exchanged", "The two masses exchanged.", "Check which mass is on which side.",
-        _pairs_exchanged, credit=0.5,
-    ),
-    Mistake(
-        "sine-for-cosine", "The cosine of a slope for its sine, or an angle measured from the vertical.",
-        "Check the component of the weight along each slope, and from where its angle is measured.", _cosines,
-    ),
-    Mistake(
-        "calculator-in-radians", "Sines of angles in degrees by a calculator set to radians.",
-        "The sines do not belong to these angles: check whether the calculator expects degrees or radians.",
-        _calculator,
-        credit=0.5,
-    ),
-    Mistake(
-        "without-gravity", "The acceleration of free fall left out.",
-        "Check the dimensions: the acceleration of free fall is missing.", _no_gravity,
-    ),
-)  # fmt: skip
+    Mistake("without-gravity", "The acceleration of free fall left out.", _no_gravity),
+)

@@ -22,6 +22,7 @@ from core.multibody.audit.chosen_times import generator, largest_rates, quicknes
 from core.multibody.audit.claims import check_claims
 from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.energy import Energies
+from core.multibody.audit.equilibria import check_equilibria
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
 from core.multibody.audit.impacts import Impacts
 from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, check_samples, measured
@@ -105,6 +106,7 @@ class _Audit:
         states = states_of(description, answer, samples.times)
         sizes = Sizes(description, samples)
         check_samples(ledger, measures, samples, states, sizes)
+        check_equilibria(ledger, description, answer, self.random)
         if asked is not None:
             self._check_motion(ledger, samples, ahead, after, measures, asked, sizes)
             if spun:

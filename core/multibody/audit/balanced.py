@@ -56,7 +56,9 @@ def joined_accelerations(parts: Sequence[Acceleration]) -> Acceleration:
     return Acceleration(np.concatenate([one.linear for one in parts]), np.concatenate(angular) if angular else None)
 
 
-def check_balance(ledger: Ledger, description: Description, freedoms: Freedoms, moments: Accelerated) -> None:
+def check_balance(
+    ledger: Ledger, description: Description, freedoms: Freedoms, moments: Accelerated, *, law: str = "Newton and Euler"
+) -> None:
     """Compare inertial terms with the forces of the answer, at all moments at once."""
     known = np.isfinite(moments.unsure)
     if not known.all():
@@ -79,9 +81,9 @@ def check_balance(ledger: Ledger, description: Description, freedoms: Freedoms, 
         changes[:, 0] = 0.0
     allowed += changes
     for k, worst in enumerate(np.argmax(left - allowed, axis=0).tolist()):
-        law = "Newton and Euler at the start" if moments.starts and k == 0 else "Newton and Euler"
+        where = " at the start" if moments.starts and k == 0 else ""
         time, body = moments.samples.times[k : k + 1], freedoms.body(worst)
-        ledger.compare(law, body, time, left[worst, k : k + 1], allowed[worst, k : k + 1])
+        ledger.compare(law + where, body, time, left[worst, k : k + 1], allowed[worst, k : k + 1])
 
 
 def _left(

@@ -54,6 +54,11 @@ class Definition:
         return type(self).gaps is not Definition.gaps
 
     @property
+    def lawful(self) -> bool:
+        """Whether some of its forces follow from places and rates."""
+        return type(self).laws is not Definition.laws
+
+    @property
     def derives(self) -> bool:
         """Whether some of its forces follow from others."""
         return type(self).derived is not Definition.derived
@@ -173,6 +178,14 @@ class Definition:
         A force that the answer gives in a second way, as components beside a normal, is in `derived`.
         """
         return NOTHING
+
+    def holding(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """Return the rates along which its forces hold bodies, by the forces: those of `efforts` that follow no law.
+
+        A force that is answered in components may hold along its direction alone.
+        """
+        laws = self.laws(placement, motion) if self.lawful else NOTHING
+        return {name: effort for name, effort in self.efforts(placement, motion).items() if name not in laws}
 
     def derived(self, placement: Placement, motion: Motion, forces: Mapping[str, Numbers]) -> Mapping[str, Numbers]:
         """Return the values of the forces of the answer that follow from others of this connection.

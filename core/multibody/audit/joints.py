@@ -336,6 +336,10 @@ class OnParabola(Definition):
         rates = self.place.velocity(placement, motion)
         return {f"{self.name}.{axis}": rates[..., i] for i, axis in enumerate("xy")}
 
+    def holding(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.holding`: along the normal of the curve."""
+        return {} if self.vertex.body is not None else {f"{self.name}.x": rate(self.height, placement, motion)}
+
     def unanswered(self, placement: Placement, motion: Motion) -> tuple[Numbers, ...]:
         """See `Definition.unanswered`."""
         return () if self.vertex.body is None else (rate(self.height, placement, motion),)

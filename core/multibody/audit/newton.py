@@ -155,17 +155,20 @@ def balance(
     for connection in description.connections:
         numbers, virtual = freedoms.virtual(connection.bodies)
         efforts = connection.efforts(placement, virtual)
-        missing = [name for name in efforts if name not in forces or np.isnan(forces[name]).any()]
+        missing = {
+            name: np.ones(samples, dtype=bool) if name not in forces else np.isnan(forces[name])
+            for name in efforts
+            if name not in forces or np.isnan(forces[name]).any()
+        }
         laws = connection.laws(placement, motion) if missing else {}
+        for name, line in (connection.holding(placement, virtual) if missing else {}).items():
+            if name in missing:
+                # A direction that vanishes holds nothing.
+                held.append(_spread(line * missing[name], numbers, rest.shape))
         for name, effort in efforts.items():
             force = forces.get(name)
             if name in missing:
-                unknown = np.ones(samples, dtype=bool) if force is None else np.isnan(force)
-                given = laws.get(name)
-                if given is None:
-                    # A direction that vanishes holds nothing.
-                    held.append(_spread(effort * unknown, numbers, rest.shape))
-                force = np.where(unknown, 0.0 if given is None else given, 0.0 if force is None else force)
+                force = np.where(missing[name], laws.get(name, 0.0), 0.0 if force is None else force)
             power = effort * force
             rest[numbers] -= power
             size[numbers] += np.abs(power)

@@ -78,7 +78,9 @@ def check_precession(
     for name, twist in start.motion.items():
         then, known = later.motion[name].velocity, later.errors[name][:, VELOCITY]
         speed, gain = float(np.abs(then).max()), _gain(answer, later, name)
+        # How fast velocities change after the period is not known without the accelerations.
         allowed = 4.0 * known + (error + 4.0 * ledger.rounding) * speed + 4.0 * late * gain
+        allowed = allowed if answer.accelerations is not None else allowed + np.inf
         if size == 0.0:
             off = np.abs(np.linalg.norm(then, axis=1) - np.linalg.norm(twist.velocity, axis=1))
             ledger.compare("speeds return after the period", name, later.times, off, allowed)

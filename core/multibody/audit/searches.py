@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from random import Random
 
 import numpy as np
@@ -12,6 +12,7 @@ from core.multibody.answer import Occurrence, SceneExtremes, SceneSolution
 from core.multibody.audit.failure import Ledger
 from core.multibody.audit.placement import Numbers
 from core.multibody.audit.samples import Columns
+from core.systems.trajectory import MotionEvent
 
 MOST_SEARCHED = 8
 """Occurrences whose values are compared: with a sample on either side they ask for two dozen times at most."""
@@ -36,7 +37,7 @@ class Searches:
         if len(occurrences) > MOST_SEARCHED:
             occurrences = random.sample(occurrences, MOST_SEARCHED)
         self.all_occurrences, self.extremes = answer.occurrences or (), answer.extremes or ()
-        self.jumps: Numbers = np.array([event.time for event in answer.events])
+        self.jumps: Numbers = np.array(list(_jumps(answer.events))).reshape(-1, 2)
         self._compared: list[tuple[Found, float]] = [(one, one.equals) for one in occurrences]
         times = [(one.time, one.error) for one in occurrences]
         for one in self.extremes:
@@ -100,7 +101,8 @@ class Searches:
         changed = side[1:] != side[:-1]
         if not {"position", "angle"} & set(name.split(".")):
             # Rates and forces may jump at an event, and do not take the values between.
-            changed &= np.diff((moments[:, None] > self.jumps).sum(axis=1)) == 0
+            begun, over = moments[1:, None] >= self.jumps[:, 0], moments[:-1, None] > self.jumps[:, 1]
+            changed &= ~(begun & ~over).any(axis=1)
         passed = moments[1:][changed]
         numbers = [one.nth for one in group]
         for one in group:
@@ -112,6 +114,15 @@ class Searches:
             ledger.compare(
                 "occurrences up to the last sample", name, moments[-1:], np.full(len(moments[-1:]), more), 0.0
             )
+
+
+def _jumps(events: Iterable[MotionEvent]) -> Iterator[tuple[float, float]]:
+    """Yield the intervals in which rates jump: at an event, and from the last bounce that is listed to their limit."""
+    last: dict[str, float] = {}
+    for event in events:
+        begin = last.get(event.name, 0.0) if event.kind == "settle" else event.time
+        yield min(begin, event.time) - event.error, event.time + event.error
+        last[event.name] = event.time
 
 
 def _groups(found: tuple[Occurrence, ...]) -> Iterator[tuple[str, float, list[Occurrence]]]:

@@ -10,7 +10,7 @@ from functools import partial
 from flint import arb
 
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import Ball
+from core.multibody.algebra.polynomials import Ball, evaluated, is_zero, size
 from core.multibody.contacts.contact_states import State, phase_table
 from core.multibody.contacts.projection import project
 from core.multibody.equations.packed import two_to
@@ -23,6 +23,7 @@ from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.phases.uniform_pieces import ExpandedUniform
 from core.multibody.phases.watches import Crossing, Watch, lengths, watches
+from core.multibody.search.bands import FLOOR
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located
@@ -89,11 +90,21 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
     """
     watched = [*watches(phase.unilateral, phase.states, phase.tables[0]), *lengths(base.measures.limits)]
     found = _crossings(base, phase, watched, left, noticed)
-    if found and found[0].watch.what == "length":
+    gone = next((watch.one.name for watch in watched if watch.what == "length" and _is_gone(watch, found)), None)
+    if gone is not None:
         time = found[0].time
         apart = SAFETY_FACTOR * abs(float(time - found[-1].time))
-        raise SingularPlace(time, apart + float(time.rad()) + 2.0**-52 * abs(float(time)), found[0].watch.one.name)
+        raise SingularPlace(time, apart + float(time.rad()) + 2.0**-52 * abs(float(time)), gone)
     return found
+
+
+def _is_gone(watch: Watch, found: Sequence[Crossing]) -> bool:
+    """Return whether a length is zero at the end of a phase, as far as is known: whatever else happens there."""
+    if not found:
+        return False
+    one, other = (evaluated(watch.one.gap, crossing.q) for crossing in (found[0], found[-1]))
+    known = SAFETY_FACTOR * abs(one - other) + FLOOR * size(watch.one.gap, found[0].q)
+    return found[0].watch is watch or is_zero(one) or bool(abs(one) <= known)
 
 
 def _crossings(

@@ -79,11 +79,10 @@ def expand(
         exponents[s] = exponent
         for k in range(order + 1):
             # The powers of what does not change are zero, whatever the length.
-            factor = math.ldexp(1.0, max(min(exponent * k, 1000), -1000))
+            power = min(exponent * k, 1000)
             for i in range(n):
-                high, low = path[0, k * size + i], path[1, k * size + i]
-                series[s, i, k, 0] = high * factor if high != 0.0 else 0.0
-                series[s, i, k, 1] = low * factor if high != 0.0 else 0.0
+                series[s, i, k, 0] = math.ldexp(path[0, k * size + i], power)
+                series[s, i, k, 1] = math.ldexp(path[1, k * size + i], power)
             largest = 0.0
             for r in range(m):
                 high, low = 0.0, 0.0
@@ -92,13 +91,13 @@ def expand(
                     high, low = dd_mul_d(path[0, at], path[1, at], (k + 1.0) * (k + 2.0))
                     # What presses together with others has their rounding, and that of the masses they move.
                     largest = max(largest, abs(high))
-                series[s, n + r, k, 0] = high * factor if high != 0.0 else 0.0
-                series[s, n + r, k, 1] = low * factor if high != 0.0 else 0.0
+                series[s, n + r, k, 0] = math.ldexp(high, power)
+                series[s, n + r, k, 1] = math.ldexp(low, power)
             if k <= order - 2:
                 for i in range(n):
                     largest = max(largest, (k + 1.0) * (k + 2.0) * abs(path[0, (k + 2) * size + i]))
             for r in range(m):
-                sizes[s, n + r, k] = largest * factor if largest > 0.0 else 0.0
+                sizes[s, n + r, k] = math.ldexp(largest, power)
         # Motions that are even in time have odd powers of rounding alone: a power is at least as large as later ones.
         for k in range(order - 1, -1, -1):
             for r in range(m):

@@ -10,17 +10,21 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from core.assessment.answer_key import Document, Terms, key_of
+from core.assessment.answer_key import Document, key_of
+from core.assessment.carried import CarriedStep, checked_steps
 from core.assessment.catalogue import MISTAKES
-from core.assessment.claims import Claim
+from core.assessment.claims import MOST_CLAIMS, Claim
 from core.assessment.comparisons import Comparison
+from core.assessment.feedback.languages import Language
 from core.assessment.figures import DESCRIBED, is_null, steps_of, value_at
 from core.assessment.formula_variations import VARIATIONS
+from core.assessment.graded_question import GradedQuestion
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_CHANGED_NUMBERS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
+from core.assessment.terms import Terms
 from core.assessment.typed_entry import Locale
-from core.errors import InvalidParameter, Path
+from core.errors import InvalidParameter, Path, inside_field
 from core.formulas import is_name
 from core.multibody.language.numerals import member
 from core.notices import Notice
@@ -80,8 +84,8 @@ class AssessmentRequest(Request):
     names: dict[str, str] | None = Field(
         default=None,
         description='Of the numbers of the request, in formulas, by pointer into it: {"M_1": "/masses/0"}; default: '
-        "their fields, several with their number: gravity, masses_1; those that share one with the field around it: "
-        "one_mass, two_mass.",
+        "their fields, several with their number, which counts from 1: gravity, masses_1 (pointers count from 0: "
+        "/masses/0); those that share one with the field around it: one_mass, two_mass.",
     )
     credits: dict[str, Credit] | None = Field(
         default=None, description="Share of the score for a recognised mistake, by tag, in place of the catalogue's."
@@ -90,6 +94,13 @@ class AssessmentRequest(Request):
         default=None,
         description="Of who typed each `text`: whether its decimal mark is a point (en) or a comma (de, es, fr). "
         "Without it a comma is one where it cannot group digits.",
+    )
+    language: Language = Field(default="en", description="Of the feedback.")
+    steps: dict[str, CarriedStep] | None = Field(
+        default=None,
+        max_length=MOST_CLAIMS,
+        description="How a figure follows from earlier ones of the same submission, by its pointer. An answer that is "
+        "wrong only because an earlier one is has the verdict carried, and the credit.",
     )
     reveal: bool = Field(
         default=True,
@@ -133,11 +144,9 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         _check_tags(credits)
         _check_figures(comparisons, graded.answer)
         catalogue = credited(MISTAKES, credits)
-        grader = Grader(
-            graded, question.comparison, comparisons, question.reveal, catalogue, _names(question), question.locale
-        )
+        grader = Grader(graded, _terms(question, graded), catalogue)
         results = [
-            submission_view(i, grader.judged(submission), reveal=question.reveal)
+            submission_view(i, grader.judged(submission), grader.terms)
             for i, submission in enumerate(question.submissions)
         ]
         shown = {"reference": reference_views(grader)} if question.reveal else {}
@@ -237,8 +246,27 @@ def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body
                 claimed.append(pointer)
             else:
                 timed.append((pointer, tuple(times.tolist())))
-    terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question), question.locale)
-    return key_of(graded, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
+    return key_of(
+        graded, _terms(question, graded), credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)]
+    )
+
+
+def _terms(question: AssessmentRequest, graded: GradedQuestion) -> Terms:
+    """Return how submissions are graded, or refuse names and steps that the question does not have."""
+    names, steps = _names(question), question.steps or {}
+    if steps:
+        parameters = {name: value for name, (_, value, _) in graded.parameters(names).items()}
+        with inside_field("steps"):
+            checked_steps(steps, parameters, graded.reference)
+    return Terms(
+        question.comparison,
+        question.comparisons or {},
+        question.reveal,
+        names,
+        question.locale,
+        question.language,
+        steps,
+    )
 
 
 def _claims_with(key: str, submissions: Sequence[Any]) -> list[dict[str, Any]]:

@@ -124,6 +124,7 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         price,
         description=DESCRIPTION,
         members=members,
+        paths=frozenset(route.path for route in routes),
     )
 
 

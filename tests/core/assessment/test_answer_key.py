@@ -11,34 +11,36 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.assessment.answer_key import AnswerKey, Terms, figures_within, key_of
+from core.assessment.answer_key import AnswerKey, figures_within, key_of
+from core.assessment.carried import CarriedStep
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import Data, DecDig, Interval, RelAbs, SigFig
 from core.assessment.figures import DESCRIBED
 from core.assessment.graded_question import GradedQuestion
 from core.assessment.grader import Grader, credited
-from core.assessment.judged_formulas import NOT_JUDGED
 from core.assessment.results import reference_views, submission_view
+from core.assessment.terms import Terms
 from tests.core.assessment.test_variants import REQUEST, Pendulum
 
 PERIOD = 2.0 * pi * sqrt(1.0 / 9.81)
+STEPS = {"/period": CarriedStep("1/f", {"f": "/frequency"})}
 COMPARISONS = {"/period": SigFig(digits=3), "/frequency": Interval(0.4, 0.6), "/difference": DecDig(digits=1)}
 
 
 def graders(reveal: bool = True, comparison: Any = None, uncertainty: float | None = None) -> tuple[Grader, AnswerKey]:
-    terms = Terms(comparison, COMPARISONS, reveal, None)
+    terms = Terms(comparison, COMPARISONS, reveal, language="fr", steps=STEPS)
     catalogue = credited(MISTAKES, {"sign": 0.125})
     key = key_of(GradedQuestion(Pendulum(), REQUEST, uncertainty), terms, catalogue, ["/lengths/0"], [])
     graded = GradedQuestion(Pendulum(), REQUEST, uncertainty)
-    return Grader(graded, comparison, COMPARISONS, reveal, catalogue, None), AnswerKey(json.loads(json.dumps(key)))
+    return Grader(graded, terms, catalogue), AnswerKey(json.loads(json.dumps(key)))
 
 
 ASKED, KEY = graders()
 HIDDEN, HIDDEN_KEY = graders(reveal=False, comparison=Data(factor=2.0), uncertainty=1e-3)
 
 
-def same(submission: Any, grader: Grader, key: AnswerKey, *, reveal: bool) -> Any:
-    own = submission_view(0, grader.judged(submission), reveal=reveal)
+def same(submission: Any, grader: Grader, key: AnswerKey) -> Any:
+    own = submission_view(0, grader.judged(submission), grader.terms)
     (found,) = key.results([submission])
     assert json.dumps(found) == json.dumps(own)
     return found
@@ -58,6 +60,7 @@ def same(submission: Any, grader: Grader, key: AnswerKey, *, reveal: bool) -> An
         ({"/difference": {"value": 1.04, "unit": "s"}}, 1.0),
         ({"/lengths": {"value": [1.0, 2.001], "unit": "s"}}, 1.0),
         ({"/lengths/0": {"value": 1.0, "unit": "s"}, "/lengths/1": {"value": 3.0, "unit": "s"}}, 0.5),
+        ({"/frequency": {"value": 0.8, "unit": "s"}, "/period": {"value": 1.25, "unit": "s"}}, 0.5),
         ({"/nothing": {"value": 1.0}}, None),
         ({"/force": {"value": 1.0}}, None),
         ({"/period": {"formula": "2*"}}, None),
@@ -65,9 +68,9 @@ def same(submission: Any, grader: Grader, key: AnswerKey, *, reveal: bool) -> An
     ],
 )
 def test_a_key_grades_as_its_question_does(claim: Any, score: float | None) -> None:
-    found = same(claim, ASKED, KEY, reveal=True)
+    found = same(claim, ASKED, KEY)
     assert found["score"] == score
-    hidden = same(claim, HIDDEN, HIDDEN_KEY, reveal=False)
+    hidden = same(claim, HIDDEN, HIDDEN_KEY)
     assert not any(test["matches"] or "error" in test for test in hidden["tests"])
 
 
@@ -78,13 +81,13 @@ def test_a_key_grades_as_its_question_does(claim: Any, score: float | None) -> N
 )
 def test_whatever_is_submitted(value: float, pointer: str, unit: str | None) -> None:
     claim = {pointer: {"value": value} | ({"unit": unit} if unit else {})}
-    same(claim, ASKED, KEY, reveal=True)
-    same(claim, HIDDEN, HIDDEN_KEY, reveal=False)
+    same(claim, ASKED, KEY)
+    same(claim, HIDDEN, HIDDEN_KEY)
 
 
 def test_a_key_names_the_figure_in_an_object() -> None:
     for pointer, remedy in (("/force", "/force/value"), ("/lengths", None), ("/nothing", None)):
-        found = same({pointer: {"formula": "1"}}, ASKED, KEY, reveal=True)
+        found = same({pointer: {"formula": "1"}}, ASKED, KEY)
         (fault,) = found["format_errors"]
         assert ("remedy" in fault) == (remedy is not None)
         assert fault.get("remedy", "").endswith(remedy or "")
@@ -113,7 +116,7 @@ def test_samples_are_not_guessed_and_no_method_is_looked_for() -> None:
 def test_every_comparison_is_read_back() -> None:
     for comparison in (RelAbs(0.1, 0.2), SigFig(4), DecDig(-1), Interval(0.0, 1.0), Data(3.0)):
         _, key = graders(comparison=comparison)
-        assert key.grader()._comparison == comparison
+        assert key.grader().terms.comparison == comparison
 
 
 def test_the_figures_of_an_answer_are_its_leaves_and_small_arrays() -> None:
@@ -145,4 +148,6 @@ def test_of_a_described_scene_a_key_has_variations_of_named_numbers(names: Any, 
     formula = "2*pi*sqrt(l/g)" if names else "2*pi*sqrt(length/gravity)"
     (found,) = AnswerKey(json.loads(json.dumps(key))).results([{"/period": {"formula": formula}}])
     assert found["score"] == score
-    assert found["feedback"] == ("Correct." if score else NOT_JUDGED)
+    assert found["feedback"] == (
+        "Correct." if score else "A formula cannot be graded here. Give the number with its unit."
+    )

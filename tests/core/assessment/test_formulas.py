@@ -7,8 +7,7 @@ from typing import Any
 
 import pytest
 
-from core.assessment.formulas import Undefined, dimensions, value_in_doubles
-from core.errors import InvalidParameter
+from core.assessment.formulas import DimensionFault, Undefined, dimensions, value_in_doubles
 from core.formulas import Formula
 
 NAMES = {"M": 2.0}
@@ -47,5 +46,5 @@ def test_dimensions_follow_from_those_of_the_parameters(text: str, powers: dict[
 
 @pytest.mark.parametrize("text", ["1 + l", "l - M", "sin(l)", "l^alpha", "2^l", "1 - sqrt(l^2 - 1)", "l^1e9"])
 def test_unequal_dimensions_are_faults(text: str) -> None:
-    with pytest.raises(InvalidParameter):
+    with pytest.raises(DimensionFault):
         dimensions(Formula.read(text, UNITS), UNITS)

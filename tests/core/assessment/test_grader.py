@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from math import pi, sqrt
 from typing import Any
 
 import pytest
 
+from core.assessment.carried import CarriedStep
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import SigFig
 from core.assessment.graded_question import GradedQuestion
 from core.assessment.grader import Grader, credited
-from core.assessment.judged_claims import JudgedClaim, explained
+from core.assessment.judged_claims import JudgedClaim, explained, text
+from core.assessment.terms import Terms
 from tests.core.assessment.pendulum import REQUEST, Pendulum
 from tests.core.assessment.test_graded_question import PERIOD
+
+STEPS = {"/period": CarriedStep("2*pi/w", {"w": "/rate"}, credit=0.75)}
 
 
 def grader(*, reveal: bool = True, **credits: float) -> Grader:
     graded = GradedQuestion(Pendulum(), REQUEST, None)
-    return Grader(graded, None, {"/rate": SigFig(4)}, reveal, credited(MISTAKES, credits), {"l": ("length",)})
+    terms = Terms(None, {"/rate": SigFig(4)}, reveal, {"l": ("length",)}, steps=STEPS)
+    return Grader(graded, terms, credited(MISTAKES, credits))
 
 
 def judged(claim: Any, pointer: str = "/period", **more: Any) -> JudgedClaim:
@@ -58,7 +64,7 @@ def test_without_reveal_no_mistake_is_named() -> None:
     one = judged({"value": -PERIOD, "unit": "s"}, reveal=False)
     assert one.mistakes == ()
     assert one.score == 0.0
-    assert one.feedback == "Not correct."
+    assert text(one.sentences, "en") == "Not correct."
 
 
 @pytest.mark.parametrize(
@@ -107,8 +113,41 @@ def test_a_pointer_that_stops_at_an_object_is_answered_with_the_figures_in_it(po
 def test_mistakes_that_give_the_same_value_are_numbered() -> None:
     catalogue = {one.tag: one for one in MISTAKES}
     two, half = catalogue["factor-2"], catalogue["factor-half"]
-    assert explained(()) == ""
-    assert explained((two,)) == "A factor of 2 is too much."
-    assert explained((two, half)) == (
-        "Several mistakes give this value, each by itself. (1) A factor of 2 is too much. (2) A factor of 2 is missing."
+    assert explained(()) == ()
+    assert text(explained((two,)), "en") == "Too large by a factor of 2."
+    assert text(explained((two, half)), "de") == (
+        "Jeder der folgenden Fehler führt auf diesen Wert. (1) Um den Faktor 2 zu groß. (2) Um den Faktor 2 zu klein."
     )
+
+
+def test_a_name_that_does_not_exist_is_named() -> None:
+    found = grader().judged({"/period": {"formula": "2*pi*sqrt(l_0/9.81)"}})
+    assert found.feedback("en") == (
+        'The problem has no quantity called "l_0": numbering starts at 1. Its names are: l.'
+    )
+    assert "„m“" in grader().judged({"/period": {"formula": "m"}}).feedback("de")
+
+
+@pytest.mark.parametrize(
+    ("rate", "period", "verdict", "score"),
+    [
+        (4.0, 2.0 * pi / 4.0, "carried", 0.5 * 0.75),
+        (4.0, 2.0 * pi / 4.2, "incorrect", 0.0),
+        (sqrt(9.81 / 0.5), 2.0 * pi / 4.0, "incorrect", 0.5),
+        (4.0, PERIOD, "correct", 0.5),
+    ],
+)
+def test_a_later_answer_is_judged_from_the_earlier_one(rate: float, period: float, verdict: str, score: float) -> None:
+    found = grader().judged({"/period": {"value": period, "unit": "s"}, "/rate": {"value": rate, "unit": "rad/s"}})
+    own = found.claims[0]
+    assert own.judgement.verdict == verdict
+    assert sum(one.score or 0.0 for one in found.claims) / 2.0 == pytest.approx(score)
+    assert (text(own.sentences, "en") == "Not the expected value, but consistent with your earlier result.") == (
+        verdict == "carried"
+    )
+
+
+def test_a_step_carries_no_error_of_an_answer_that_has_no_unit_or_is_not_there() -> None:
+    period = {"/period": {"value": 2.0 * pi / 4.0, "unit": "s"}}
+    for other in ({}, {"/rate": {"value": 4.0, "unit": "kg"}}):
+        assert grader().judged(period | other).claims[0].judgement.verdict == "incorrect"

@@ -8,9 +8,9 @@ from core.assessment.compare import Reference
 from core.assessment.comparisons import DecDig, Interval
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 
-TWICE = Mistake("twice", "", "", lambda figure: [2.0 * figure.right])
-ALSO_TWICE = Mistake("also-twice", "", "", lambda figure: [None, np.nan, 2.0 * figure.right])
-THRICE = Mistake("thrice", "", "", lambda figure: [3.0 * figure.right])
+TWICE = Mistake("twice", "", lambda figure: [2.0 * figure.right])
+ALSO_TWICE = Mistake("also-twice", "", lambda figure: [None, np.nan, 2.0 * figure.right])
+THRICE = Mistake("thrice", "", lambda figure: [3.0 * figure.right])
 
 
 def wrong_values(value: float | np.ndarray) -> WrongValues:
@@ -44,7 +44,7 @@ def test_the_comparison_decides_how_near_is_near() -> None:
 
 def test_wrong_values_are_computed_once() -> None:
     calls = []
-    counted = Mistake("counted", "", "", lambda figure: calls.append(1) or [5.0])
+    counted = Mistake("counted", "", lambda figure: calls.append(1) or [5.0])
     reference = Reference(1.0)
     found = WrongValues(Figure("", {}, ("x",), reference, lambda request: lambda path: None), (counted,))
     for _ in range(3):

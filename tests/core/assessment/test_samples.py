@@ -34,8 +34,9 @@ def test_errors_say_how_much_and_since_when() -> None:
     assert found.energy_drift == pytest.approx(np.abs(energy / energy[0] - 1).max())
     within = errors_of_samples(system, times, rows, right, 1.0)
     assert within.within_until is None
-    assert within.sentence == ""
-    assert found.sentence == "The samples are right until t = -2 s."
+    assert within.sentence is None
+    assert found.sentence is not None
+    assert found.sentence.text("en") == "The samples are correct until t = -2 s."
 
 
 def test_the_drift_of_explicit_euler_obeys_its_identity() -> None:
@@ -99,7 +100,9 @@ def test_what_is_lost_at_the_separatrix_circles_another_axis() -> None:
     first = times[np.linalg.norm(rows - right, axis=1) > 0.01][0]
     assert first > 5.0
     assert found.within_until == found.separatrix_crossed == first
-    assert found.sentence.startswith(f"The samples are right until t = {first:.3g} s, then lost at the separatrix")
+    assert found.sentence is not None
+    shown = f"The samples are correct until t = {first:.3g} s. Then they are lost at the separatrix"
+    assert found.sentence.text("en").startswith(shown)
     # A little more energy on the same side is no crossing.
     other = near_separatrix(0.9).closed_form().sample(times)
     assert errors_of_samples(system, times, other, right, 0.01).separatrix_crossed is None
@@ -117,9 +120,9 @@ def test_noise_is_not_lost_at_the_separatrix() -> None:
 
 @pytest.mark.parametrize(
     ("order", "sentence"),
-    [((0, 2, 1), "Axes 2 and 3 are exchanged."), ((1, 2, 0), "The axes stand in the order 2, 3, 1.")],
+    [((0, 2, 1), "Axes 2 and 3 are exchanged."), ((1, 2, 0), "The axes are in the order 2, 3, 1.")],
 )
 def test_exchanged_axes_are_named(order: tuple[int, ...], sentence: str) -> None:
     _, _, system = motion(Random(8))
     right = system.closed_form().sample(np.linspace(0.0, 3.0, 20))
-    assert exchanged(right[:, list(order)], right) == sentence
+    assert exchanged(right[:, list(order)], right).text("en") == sentence

@@ -179,7 +179,9 @@ class Elsewhere:
     def __init__(self) -> None:
         self.asked: list[tuple[str, bytes, bool, str | None]] = []
 
-    async def answer(self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender) -> str:
+    async def answer(
+        self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender, *, later: bool
+    ) -> str:
         self.asked.append((route.path, body, npz, media))
         return "elsewhere"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import signal
 from collections.abc import Callable
@@ -189,6 +190,25 @@ def test_a_dismissed_study_lets_its_processes_go(desk_on: Desks, processes: str)
 def test_a_member_that_takes_far_too_long_is_ended(desk_on: Desks, processes: str) -> None:
     _, _, failed, _ = finished(desk_on(processes, longest=1.0), sleeping(60.0, 1), 0.001)
     assert failed == b'["deadline-exceeded"]'
+
+
+def test_an_answer_that_takes_far_too_long_is_ended(desk_on: Desks, processes: str) -> None:
+    desk = desk_on(processes, longest=1.0)
+    identity = desk.submit_question(json.dumps(sleeping(60.0, 1)["question"]["request"]).encode())
+    desk.work()
+    study = desk.study(identity)
+    assert (study.status, study.message.split(":")[0]) == (FAILED, "deadline-exceeded")
+
+
+def test_answers_leave_half_of_the_processes_to_members(desk_on: Desks, processes: str) -> None:
+    desk = desk_on(processes)
+    asleep = json.dumps(sleeping(1.5, 1)["question"]["request"]).encode()
+    answers = [desk.submit_question(asleep) for _ in range(2)]
+    members = desk.submit(UNIFORM)
+    desk.work(until=lambda: not desk.study(members).unfinished)
+    assert any(desk.study(identity).unfinished for identity in answers)
+    desk.work()
+    assert [desk.study(identity).status for identity in answers] == [SUCCESSFUL] * 2
 
 
 def test_studies_have_their_turns_in_rotation(desk_on: Desks, in_process: str) -> None:

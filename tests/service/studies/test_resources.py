@@ -108,6 +108,53 @@ async def test_a_study_from_submission_to_results(desk_on: Desks, in_process: st
         assert [entry["jobID"] for entry in listed] == [state["jobID"]]
 
 
+LATER = {"prefer": "wait=5, respond-async", "content-type": "application/json"}
+
+
+async def test_an_answer_in_the_background_has_the_bytes_of_the_answer(
+    desk_on: Desks, in_process: str, tmp_path: Path
+) -> None:
+    body = json.dumps(GOOD).encode()
+    async with client_at(tmp_path) as client:
+        response = await client.post("/v1/toy", content=body, headers=LATER)
+        assert (response.status_code, response.headers["preference-applied"]) == (202, "respond-async")
+        place = response.headers["location"]
+        assert (await client.get(f"{place}/results")).json()["code"] == "results-not-ready"
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        state = (await client.get(place)).json()
+        assert (state["status"], state["count"], state["progress"], state["figures"]) == ("successful", 1, 100, [])
+        (link,) = (link for link in state["links"] if link["rel"] == "results")
+        found = await client.get(link["href"])
+        assert found.headers["content-type"] == "application/json"
+        assert found.content == (await client.post("/v1/toy", json=GOOD)).content
+        # What it takes is known when it is there.
+        assert state["bytes"] > len(found.content)
+        assert (await client.get(f"{link['href']}?start=0")).status_code == 422
+        assert (await client.get(link["href"], headers={"accept": "application/x-npz"})).status_code == 406
+
+
+@pytest.mark.parametrize("behaviour", ["unreachable", "fail"])
+async def test_an_answer_in_the_background_that_there_is_not_has_failed(
+    desk_on: Desks, in_process: str, tmp_path: Path, behaviour: str
+) -> None:
+    async with client_at(tmp_path) as client:
+        response = await client.post("/v1/toy", json=GOOD | {"behaviour": behaviour}, headers=LATER)
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        state = (await client.get(response.headers["location"])).json()
+        code = {"unreachable": "accuracy-unreachable", "fail": "internal-error"}[behaviour]
+        assert (state["status"], state["message"].split(":")[0]) == ("failed", code)
+
+
+async def test_what_is_wrong_with_a_request_is_said_before_it_is_put_off(tmp_path: Path) -> None:
+    async with client_at(tmp_path) as client:
+        response = await client.post("/v1/toy", json=GOOD | {"behaviour": "absent"}, headers=LATER)
+        assert (response.status_code, response.json()["errors"][0]["pointer"]) == (422, "/behaviour")
+        assert (await client.get("/v1/studies")).json()["studies"] == []
+        # A preference that cannot be met is ignored (RFC 7240, 2).
+        archive = {**LATER, "accept": "application/x-npz"}
+        assert (await client.post("/v1/toy", json=GOOD, headers=archive)).status_code == 200
+
+
 @pytest.mark.parametrize("place", ["/v1/studies/{study}", "/v1/studies/{study}/results", "/v1/studies/{study}/events"])
 async def test_a_path_as_it_is_documented_is_no_study(tmp_path: Path, place: str) -> None:
     async with client_at(tmp_path) as client:

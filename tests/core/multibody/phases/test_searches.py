@@ -191,3 +191,25 @@ def test_a_quantity_that_is_none_names_those_that_are() -> None:
     with pytest.raises(InvalidParameter, match=r"ball\.velocity") as fault:
         found(bouncing(), 1.0, When("ball.speed", 0.0))
     assert fault.value.path == ("outputs", 1, "when", "quantity")
+
+
+def test_samples_at_the_impacts_do_not_hide_that_rates_jump_there() -> None:
+    """With g 10 from 1.25 m and restitution 1/2: impacts at 0.5, 1 and 1.25 s, and between them two tops."""
+    scene = bouncing("1/2") | {"gravity": [0, -10]}
+    times = [0.0, 0.25, 0.5, 0.75, 1.0, 1.125, 1.25, 1.5, 1.75]
+    answer = solve_scene(read(scene), times, ["trajectory", When("ball.velocity.y", 0)])
+    assert answer.occurrences is not None
+    assert [one.time for one in answer.occurrences[:2]] == [0.75, 1.125]
+
+
+def test_a_weight_that_reaches_its_peg_as_the_other_one_lands_ends_there() -> None:
+    """Weights of 2 and 1 kg at -1 m: a = g/3, and both go 1 m in sqrt(6/g) s."""
+    bodies = {"left": {"mass": 2, "at": ["-1/2", -1]}, "right": {"mass": 1, "at": ["1/2", -1]}}
+    string = {"kind": "string", "name": "s", "through": ["left", ["-1/2", 0], ["1/2", 0], "right"]}
+    floor = {"kind": "contact", "place": "left", "on": {"at": [0, -2]}, "restitution": "1/2"}
+    scene = {"gravity": [0, -10], "bodies": bodies, "connections": [string, floor]}
+    answer = solve_scene(read(scene), [3.0])
+    assert answer.ended is not None
+    assert (answer.ended.kind, answer.ended.name) == ("singular", "s")
+    with mp.workdps(30):
+        assert abs(answer.ended.time - sqrt(mpf("0.6"))) <= answer.ended.error + 1e-15

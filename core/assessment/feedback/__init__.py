@@ -1,0 +1,1 @@
+"""Feedback for those who submitted an answer, in several languages: one catalogue of texts for each."""

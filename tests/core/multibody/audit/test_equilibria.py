@@ -1,0 +1,100 @@
+"""Wrong equilibria are refused: places off the balance or off what holds them, and modes that are not theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from core.multibody.answer import Equilibrium
+from core.multibody.solve import solve_scene
+from tests.core.multibody.audit.spoiled import Audited, answered, description_of
+from tests.core.multibody.random_scenes import any_scene
+from tests.core.multibody.worked_examples import read
+
+RESTING = (
+    "bead-on-hoop", "bead-on-parabola", "bead-on-rotating-rod", "centrifugal-governor", "conical-pendulum",
+    "coupled-pendulums", "damped-oscillator", "double-pendulum", "double-pendulum-of-points", "elastic-pendulum",
+    "four-bar-linkage", "harmonic-ellipse", "inverted-pendulum-on-torsion-spring", "ladder-on-rails",
+    "lagrange-points", "loaded-hoop", "physical-pendulum", "plank-on-two-strings", "rod-in-cylinder",
+    "spherical-pendulum", "trammel",
+)  # fmt: skip
+
+
+@cache
+def right(scene: str) -> Audited:
+    return answered(description_of(scene), (), ("equilibria",))
+
+
+def moved(by: float) -> Callable[[Equilibrium], Equilibrium]:
+    def change(one: Equilibrium) -> Equilibrium:
+        first = next(iter(one.positions))
+        place = one.positions[first]
+        return replace(one, positions={**one.positions, first: (place[0] + by, place[1] - by / 2.0, *place[2:])})
+
+    return change
+
+
+def turned(one: Equilibrium) -> Equilibrium:
+    return replace(one, angles={name: angle + 1e-6 for name, angle in one.angles.items()})
+
+
+def quicker(one: Equilibrium) -> Equilibrium:
+    modes = tuple(
+        mode._replace(frequency=mode.frequency * (1.0 + 1e-5), growth_rate=mode.growth_rate * (1.0 + 1e-5))
+        for mode in one.modes
+    )
+    return replace(one, modes=modes)
+
+
+SPOILED: dict[str, Callable[[Equilibrium], Equilibrium]] = {
+    "a place is off by a millionth": moved(1e-6),
+    "a place is off by a hundredth": moved(1e-2),
+    "angles are off by a millionth": turned,
+    "places are reflected": lambda one: replace(
+        one, positions={name: tuple(-x - 0.1 for x in place) for name, place in one.positions.items()}
+    ),
+    "modes are too quick by a hundred thousandth": quicker,
+    "modes that are stable grow": lambda one: replace(
+        one, modes=tuple(mode._replace(frequency=mode.growth_rate, growth_rate=mode.frequency) for mode in one.modes)
+    ),
+    "a mode is missing": lambda one: replace(one, modes=one.modes[1:]),
+    "a mode is listed twice": lambda one: replace(one, modes=(*one.modes, *one.modes[:1])),
+    "stability is the opposite": lambda one: replace(one, stable=None if one.stable is None else not one.stable),
+}
+
+
+@pytest.mark.parametrize("scene", RESTING)
+def test_right_equilibria_pass(scene: str) -> None:
+    assert right(scene).answer.equilibria
+    assert right(scene).failure() is None
+
+
+@pytest.mark.parametrize("kind", SPOILED)
+def test_wrong_equilibria_are_refused(kind: str) -> None:
+    count = 0
+    for scene in RESTING:
+        one = right(scene)
+        equilibria = one.answer.equilibria
+        assert equilibria is not None
+        spoiled = tuple(map(SPOILED[kind], equilibria))
+        damped = scene in ("damped-oscillator", "lagrange-points")
+        if spoiled == equilibria or (damped and "opposite" in kind):
+            continue
+        count += 1
+        assert replace(one, answer=replace(one.answer, equilibria=spoiled)).failure() is not None, scene
+    assert count >= (6 if "angles" in kind else 15)
+
+
+@pytest.mark.parametrize("seed", range(0, 40, 5))
+def test_equilibria_of_random_scenes_pass(seed: int) -> None:
+    solve_scene(read(any_scene(seed)), np.zeros(0), ("equilibria",))
+
+
+def test_the_period_of_a_top_passes_without_accelerations() -> None:
+    # How fast its velocity changes after the period is not known then.
+    assert right("lagrange-top").answer.period is not None
+    assert right("lagrange-top").failure() is None
