@@ -145,7 +145,10 @@ class Searches:
         found = [part.extremes(search.quantity) for part in self._parts(search, index)]
         if len(found) == 1:
             return found[0]
-        low, high = min(found, key=lambda one: one.least), max(found, key=lambda one: one.largest)
+        least, largest = min(found, key=lambda one: one.least), max(found, key=lambda one: one.largest)
+        # The first of those that cannot be told apart, as on one stretch.
+        low = next(one for one in found if one.least - least.least <= one.error + least.error)
+        high = next(one for one in found if largest.largest - one.largest <= one.error + largest.error)
         last = self.stretches[-1]
         return replace(
             low,

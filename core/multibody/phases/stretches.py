@@ -121,14 +121,15 @@ class Stretch:
 
 
 def stretches(motion: PhaseMotion, end: float, *, finer: bool) -> Iterator[Stretch]:
-    """Yield the stretches of a motion up to a time, in their order."""
+    """Yield the stretches of a motion up to a time, in their order; the last may be the state after an event there."""
     for number, phase in enumerate(motion.phases):
         until = arb(end)
         if phase.end is not None and phase.end < until:
             until = phase.end
-        # What happens at the start belongs to the first.
         if number and not until > phase.start:
-            return
+            if until < phase.start:
+                return
+            until = phase.start
         late = float(phase.start.rad())
         late += SAFETY_FACTOR * max((abs(float(one.time - phase.start)) for one in phase.tracks), default=0.0)
         if phase.bounces is None:
@@ -142,7 +143,7 @@ def _arcs(number: int, phase: Phase, bounces: Accumulation, until: Ball, late: f
     reach = until - phase.start
     for n in range(MOST_ARCS):
         begins, power = bounces.begins(n), bounces.restitution**n
-        if not begins < reach:
+        if n and not begins < reach:
             return
         if float(power) < _GONE:
             q, v = bounces.limit()

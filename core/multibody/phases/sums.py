@@ -67,7 +67,8 @@ class Sums:
 
     def __init__(self, columns: ColumnsInPhases, times: Floats, how: How) -> None:
         self.motion, self.times, self.how = columns.motion, times, how
-        self.pieces = list(stretches(columns.motion, float(np.max(times, initial=0.0)), finer=columns.finer))
+        pieces = stretches(columns.motion, float(np.max(times, initial=0.0)), finer=columns.finer)
+        self.pieces = [piece for piece in pieces if piece.length > 0.0 or not piece.number]
         starts = [piece.start for piece in self.pieces]
         self.where = np.array([_last_before(starts, float(t)) for t in times], dtype=np.int64)
         self._smooth: dict[tuple[int, tuple[int, ...], float], Floats] = {}

@@ -213,3 +213,27 @@ def test_a_weight_that_reaches_its_peg_as_the_other_one_lands_ends_there() -> No
     assert (answer.ended.kind, answer.ended.name) == ("singular", "s")
     with mp.workdps(30):
         assert abs(answer.ended.time - sqrt(mpf("0.6"))) <= answer.ended.error + 1e-15
+
+
+@pytest.mark.parametrize("end", [1.0, 3.0])
+def test_both_sides_of_a_jump_at_the_last_time_count_for_extremes(end: float) -> None:
+    """Two stones at 1 m from one another, one of which rises at 1 m/s: their string of sqrt(2) m is taut at 1 s."""
+    bodies = {"a": {"mass": 1, "at": [0, 1]}, "b": {"mass": 1, "at": [1, 1], "velocity": [0, 1]}}
+    string = {"kind": "string", "through": ["a", "b"], "length": "sqrt(2)"}
+    scene = {"gravity": [0, -9.81], "bodies": bodies, "connections": [string]}
+    answer = solve_scene(read(scene), [end], ["trajectory", ExtremesOf("a.velocity.x"), ExtremesOf("b.velocity.x")])
+    assert [(one.kind, one.time) for one in answer.events] == [("taut", 1.0)]
+    if end == 1.0:
+        # A quarter of the relative velocity along 45 degrees, in each direction.
+        one, other = answer.extremes or ()
+        assert (one.least, other.largest) == (0.0, 0.0)
+        assert one.largest == pytest.approx(0.25, abs=1e-14)
+        assert other.least == pytest.approx(-0.25, abs=1e-14)
+        assert one.largest_time == other.least_time == 1.0
+
+
+def test_of_equal_extremes_the_first_is_answered() -> None:
+    answer = solve_scene(read(bouncing(1)), [9.0], ["trajectory", ExtremesOf("ball.position.y")])
+    (height,) = answer.extremes or ()
+    assert height.largest_time == 0.0
+    assert abs(height.least_time - bounce(1)) <= height.errors["least_time"]
