@@ -71,7 +71,7 @@ class View(BaseModel):
 
 
 class Signature(View):
-    """Who answered."""
+    """Name and version of the service."""
 
     source: Literal["polhode"]
     version: str = Field(description="Version of the service; equal questions get equal bytes within one version.")

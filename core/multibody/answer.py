@@ -128,7 +128,7 @@ class SceneExtremes:
     Attributes
     ----------
     least_time, largest_time : float
-        The first of the times that are not told apart.
+        The first of the times that cannot be distinguished.
     error : float
         Of both values.
     until : float

@@ -119,9 +119,9 @@ class Work:
     evaluations : int
         Of the equation of motion, or of the flows of its parts.
     steps, rejected_steps : int
-        Taken by the method, and tried in vain beside them. Of a method with a fixed step, those of its grid.
+        Steps accepted by the method, and steps rejected. Of a method with a fixed step, those of its grid.
     evaluations_for_error : int
-        Spent on stating the error, beside those that made the samples.
+        Spent on estimating the error, in addition to those for the samples.
     step : float or None
         Length of the steps from t = 0 (s), None for methods that choose them and for closed forms.
     """

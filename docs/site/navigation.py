@@ -32,6 +32,7 @@ def navigation() -> list[Any]:
         {"See a motion in the browser": "pages.md"},
         {"Describe a scene": "describing-scenes.md"},
         {"Grade homework": "grading.md"},
+        {"A published solution with mistakes": "homework.md"},
         {"Study many variations": "studies.md"},
         {"Read and choose the accuracy": "accuracy.md"},
         {"Compute large trajectories": "large-trajectories.md"},
@@ -48,6 +49,7 @@ def navigation() -> list[Any]:
                 {"Objects": GENERATED[1]},
                 {"Problems": GENERATED[2]},
                 {"Settings": GENERATED[3]},
+                {"Numbers you can cite": "numbers.md"},
                 {"Catalogue of scenes": "physics/scene-catalogue.md"},
                 {"Changelog": "changelog.md"},
             ]

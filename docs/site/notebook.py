@@ -1,7 +1,7 @@
-"""The tutorial as a notebook, and its figures.
+"""The guide to the homework as a notebook, and its figures.
 
-``python -m docs.site.notebook`` runs the tutorial with the service that runs at POLHODE_PORT, writes its figures to
-docs/pictures/tutorial, and the notebook to examples/homework.ipynb.
+``python -m docs.site.notebook`` runs the guide with the service that runs at POLHODE_PORT, writes its figures to
+docs/pictures/homework, and the notebook to examples/homework.ipynb.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from docs.site.blocks import blocks
 from docs.site.navigation import DOCS, ROOT
 from examples.ask import service_url
 
-TUTORIAL = DOCS / "tutorial.md"
+GUIDE = DOCS / "homework.md"
 NOTEBOOK = ROOT / "examples/homework.ipynb"
-FIGURES = DOCS / "pictures/tutorial"
+FIGURES = DOCS / "pictures/homework"
 
-FIGURE = re.compile(r"!\[[^\]]*\]\(pictures/tutorial/([a-z-]+\.svg)\)")
+FIGURE = re.compile(r"!\[[^\]]*\]\(pictures/homework/([a-z-]+\.svg)\)")
 LINK = re.compile(r"\]\((?!https?:)([^)]+)\)")
 
 
 def notebook(text: str) -> dict[str, Any]:
-    """Return the tutorial as a notebook (nbformat 4.5), with the output that the page shows and its figures."""
+    """Return the guide as a notebook (nbformat 4.5), with the output that the page shows and its figures."""
     cells = [*_cells(text)]
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
@@ -38,7 +38,7 @@ def notebook(text: str) -> dict[str, Any]:
 
 
 def written(text: str) -> str:
-    """Return the notebook of a tutorial as its file holds it."""
+    """Return the notebook of a guide as its file holds it."""
     return json.dumps(notebook(text), indent=1, ensure_ascii=False) + "\n"
 
 
@@ -109,7 +109,7 @@ def _lines(text: str) -> list[str]:
 
 def main() -> None:
     """Write figures and notebook."""
-    text, names = TUTORIAL.read_text(encoding="utf-8"), {"__name__": "tutorial"}
+    text, names = GUIDE.read_text(encoding="utf-8"), {"__name__": "guide"}
     FIGURES.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         for block in blocks(text):

@@ -171,9 +171,7 @@ class SceneDescription(Request):
         description=f"By name, at most {MOST_BODIES}. Names are letters, digits, - and _."
     )
     connections: list[ConnectionReadByCore] = Field(default=[], description=f"At most {MOST_CONNECTIONS}.")
-    let: NamedNumbers = Field(
-        default={}, description="Named numbers for formulas, each of which may use those before it."
-    )
+    let: NamedNumbers = Field(default={}, description="Named constants for formulas; each may use those before it.")
     numbers: Literal["decimals", "doubles"] = Field(
         default="decimals", description="Whether 0.1 is the decimal or the double nearest to it."
     )

@@ -1,4 +1,4 @@
-"""Catalogues: methods of integration, scenes, problems, mistakes, and what mechanics leaves undecided."""
+"""Catalogues: methods of integration, scenes, mistakes, and statically indeterminate and ill-posed problems."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class MistakeEntry(View):
 
     tag: str = Field(description="Stable name for machines.")
     summary: str = Field(description="What was done.")
-    feedback: dict[Language, str] = Field(description="For who made the mistake, by language; it gives no number.")
+    feedback: dict[Language, str] = Field(description="Feedback for the student, by language; it gives no number.")
     credit: Ratio[float] = Field(description="Share of the score, unless the assessment's credits change it.")
 
 

@@ -223,7 +223,9 @@ class DescribedSceneAnswer(AtStart[float]):
     phases: list[MotionPhase] | None = Field(
         default=None, description="Of a scene with contacts, stops, or strings that become slack."
     )
-    problem: SceneProblem | None = Field(default=None, description="If mechanics leaves something undecided.")
+    problem: SceneProblem | None = Field(
+        default=None, description="If the problem is statically indeterminate or ill-posed."
+    )
     trajectory: DescribedTrajectory | None = None
     occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was requested, in its order.")
     extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were requested.")

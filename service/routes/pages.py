@@ -15,7 +15,7 @@ _MEDIA_TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/cs
 """Of the files that are served; others of the folder are not."""
 
 _PAGES = {
-    "/": ("index.html", "get_start_page", "A rotating body beside its energy ellipsoid, to look at and to change"),
+    "/": ("index.html", "get_start_page", "Page: a rotating body beside its energy ellipsoid"),
     "/scenes": ("scenes.html", "get_scenes_page", "Every scene of the catalogue in motion, and your own"),
     "/studies": ("studies.html", "get_studies_page", "Studies with their progress, maps, histograms and results"),
     "/docs": ("docs.html", "get_documentation", "The reference of the API, to read and to try"),

@@ -41,7 +41,7 @@ class PlanRequest(Request):
 
 
 class PlannedModel(View):
-    """The model that would answer; fields beside the first three are those of the answer, where it has them."""
+    """The model that would be used; the other fields are those of the answer, where it has them."""
 
     name: str = Field(description="For example torque-free rigid body.")
     why: str = Field(description="The facts of the question that selected it.")
@@ -139,7 +139,7 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
     return PostRoute(
         "/v1/plan",
         "plan",
-        "Model, method, cost, error and refusals of any other question, which is not answered",
+        "Model, method, cost, error and faults of any request, without running it",
         "accuracy",
         PlanRequest,
         PlanAnswer,

@@ -1,4 +1,4 @@
-"""Well-conditioned variants of any other question, drawn from a seed, each with its figures."""
+"""Well-conditioned variants of any problem, drawn from a seed, each with its figures."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class VariantsAnswer(Envelope):
 
     path: str = Field(description="Of the endpoint that the requests go to.")
     seed: int = Field(description="As in the request.", json_schema_extra={"x-unit": "1"})
-    variants: list[Variant] = Field(description="As many as were asked for.")
+    variants: list[Variant] = Field(description="As many as `count`.")
     rejected: dict[str, int] = Field(
         description="How many draws were rejected, by reason: refused (the question has no answer with them), warned "
         "(by another kind of warning than the question as it is, such as that no body has these moments), absent (a "
@@ -165,7 +165,7 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
     return PostRoute(
         "/v1/variants",
         "vary",
-        "Well-conditioned variants of any other question from a seed, each with its figures, their error and condition",
+        "Well-conditioned variants of any problem from a seed, with their values, errors and condition numbers",
         "assessment",
         VariantsRequest,
         VariantsAnswer,

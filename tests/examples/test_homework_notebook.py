@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from docs.site.notebook import FIGURES, NOTEBOOK, TUTORIAL, written
+from docs.site.notebook import FIGURES, GUIDE, NOTEBOOK, written
 
 
 @pytest.fixture
@@ -26,8 +26,8 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
     return found
 
 
-def test_it_is_the_tutorial() -> None:
-    assert NOTEBOOK.read_text() == written(TUTORIAL.read_text()), "run python -m docs.site.notebook"
+def test_it_is_the_guide() -> None:
+    assert NOTEBOOK.read_text() == written(GUIDE.read_text()), "run python -m docs.site.notebook"
 
 
 def test_it_executes_and_prints_and_draws_what_it_shows(

@@ -246,7 +246,7 @@ class MassPropertiesAnswer(TypedDict):
 
 
 class Signature(TypedDict):
-    """Who answered."""
+    """Name and version of the service."""
 
     source: Literal["polhode"]
     version: str
@@ -2235,7 +2235,7 @@ class CertifiedChainSamples(TypedDict):
 
 
 class CertifiedSceneRequest(TypedDict):
-    """Bodies, what connects them, and to how many digits they are asked about."""
+    """Bodies, their connections, and the number of proven digits."""
 
     gravity: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
     bodies: Mapping[str, SceneBody]
@@ -2374,7 +2374,7 @@ class PlanAnswer(TypedDict):
 
 
 class PlannedModel(TypedDict):
-    """The model that would answer; fields beside the first three are those of the answer, where it has them."""
+    """The model that would be used; the other fields are those of the answer, where it has them."""
 
     name: str
     why: str
@@ -2828,7 +2828,7 @@ class StudySummary(TypedDict):
 
 
 class StudyStatistics(TypedDict):
-    """Statistics of one figure; null where they were not asked for or do not exist."""
+    """Statistics of one quantity; null where they were not requested or do not exist."""
 
     unit: str | None
     present: int
@@ -2842,7 +2842,7 @@ class StudyStatistics(TypedDict):
 
 
 class StudyQuantile(TypedDict):
-    """The value below which a share of the members lies."""
+    """The value below which a share of the samples lies."""
 
     probability: float
     value: float

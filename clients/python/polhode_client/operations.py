@@ -124,21 +124,19 @@ OPERATIONS: Mapping[str, Operation] = {
         "/v1/certified/scenes",
         "A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven",
     ),
-    "plan": Operation(
-        "POST", "/v1/plan", "Model, method, cost, error and refusals of any other question, which is not answered"
-    ),
+    "plan": Operation("POST", "/v1/plan", "Model, method, cost, error and faults of any request, without running it"),
     "assess": Operation(
         "POST",
         "/v1/assessments",
-        "Submitted answers to any other question, graded: verdict, error, recognised mistakes",
+        "Student answers to any problem that the service can solve, graded: verdict, error, recognised mistakes",
     ),
     "vary": Operation(
         "POST",
         "/v1/variants",
-        "Well-conditioned variants of any other question from a seed, each with its figures, their error and condition",
+        "Well-conditioned variants of any problem from a seed, with their values, errors and condition numbers",
     ),
     "create_study": Operation(
-        "POST", "/v1/studies", "A study: any other question with varied inputs, its members answered in the background"
+        "POST", "/v1/studies", "A study: any problem with varied inputs, computed in the background"
     ),
     "list_studies": Operation("GET", "/v1/studies", "The client's own studies"),
     "get_study": Operation("GET", "/v1/studies/{study}", "The state of a study"),
@@ -161,7 +159,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "get_readiness": Operation("GET", "/readyz", "Whether every kernel is compiled and the compute processes are up"),
     "get_metrics": Operation("GET", "/metrics", "Counters in Prometheus' text format"),
     "get_openapi": Operation("GET", "/openapi.json", "The OpenAPI document"),
-    "get_start_page": Operation("GET", "/", "A rotating body beside its energy ellipsoid, to look at and to change"),
+    "get_start_page": Operation("GET", "/", "Page: a rotating body beside its energy ellipsoid"),
     "get_scenes_page": Operation("GET", "/scenes", "Every scene of the catalogue in motion, and your own"),
     "get_studies_page": Operation("GET", "/studies", "Studies with their progress, maps, histograms and results"),
     "get_documentation": Operation("GET", "/docs", "The reference of the API, to read and to try"),
@@ -378,22 +376,22 @@ class Operations(ABC):
         return found
 
     def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
-        """Model, method, cost, error and refusals of any other question, which is not answered."""
+        """Model, method, cost, error and faults of any request, without running it."""
         found: documents.PlanAnswer = self._ask("plan", question, None)
         return found
 
     def assess(self, **question: Unpack[documents.AssessmentRequest]) -> documents.AssessmentAnswer:
-        """Submitted answers to any other question, graded: verdict, error, recognised mistakes."""
+        """Student answers to any problem that the service can solve, graded: verdict, error, recognised mistakes."""
         found: documents.AssessmentAnswer = self._ask("assess", question, None)
         return found
 
     def vary(self, **question: Unpack[documents.VariantsRequest]) -> documents.VariantsAnswer:
-        """Well-conditioned variants of any other question from a seed, each with its figures, their error and condition."""
+        """Well-conditioned variants of any problem from a seed, with their values, errors and condition numbers."""
         found: documents.VariantsAnswer = self._ask("vary", question, None)
         return found
 
     def create_study(self, **question: Unpack[documents.StudyRequest]) -> documents.StudyState:
-        """A study: any other question with varied inputs, its members answered in the background."""
+        """A study: any problem with varied inputs, computed in the background."""
         found: documents.StudyState = self._ask("create_study", question, None)
         return found
 
@@ -468,7 +466,7 @@ class Operations(ABC):
         return found
 
     def get_start_page(self) -> str:
-        """A rotating body beside its energy ellipsoid, to look at and to change."""
+        """Page: a rotating body beside its energy ellipsoid."""
         found: str = self._ask("get_start_page", None, "text/html")
         return found
 
@@ -708,22 +706,22 @@ class AsyncOperations(ABC):
         return found
 
     async def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
-        """Model, method, cost, error and refusals of any other question, which is not answered."""
+        """Model, method, cost, error and faults of any request, without running it."""
         found: documents.PlanAnswer = await self._ask("plan", question, None)
         return found
 
     async def assess(self, **question: Unpack[documents.AssessmentRequest]) -> documents.AssessmentAnswer:
-        """Submitted answers to any other question, graded: verdict, error, recognised mistakes."""
+        """Student answers to any problem that the service can solve, graded: verdict, error, recognised mistakes."""
         found: documents.AssessmentAnswer = await self._ask("assess", question, None)
         return found
 
     async def vary(self, **question: Unpack[documents.VariantsRequest]) -> documents.VariantsAnswer:
-        """Well-conditioned variants of any other question from a seed, each with its figures, their error and condition."""
+        """Well-conditioned variants of any problem from a seed, with their values, errors and condition numbers."""
         found: documents.VariantsAnswer = await self._ask("vary", question, None)
         return found
 
     async def create_study(self, **question: Unpack[documents.StudyRequest]) -> documents.StudyState:
-        """A study: any other question with varied inputs, its members answered in the background."""
+        """A study: any problem with varied inputs, computed in the background."""
         found: documents.StudyState = await self._ask("create_study", question, None)
         return found
 
@@ -798,7 +796,7 @@ class AsyncOperations(ABC):
         return found
 
     async def get_start_page(self) -> str:
-        """A rotating body beside its energy ellipsoid, to look at and to change."""
+        """Page: a rotating body beside its energy ellipsoid."""
         found: str = await self._ask("get_start_page", None, "text/html")
         return found
 

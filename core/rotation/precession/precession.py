@@ -8,7 +8,7 @@ Two equal moments I beside I3, spin w3 along the axis e3 of the third and w_perp
                 tan(L, w) = |I3 - I| w_perp |w3| / (I w_perp^2 + I3 w3^2)
 
 Three distinct moments: period 4K/p of the angular velocity, and the angle by which the circled axis turns about L in
-it, whose quotient is the mean precession rate. The angle is right to the last digits; modulo a whole turn it is
+it, whose quotient is the mean precession rate. The angle is accurate to the last digit; modulo a whole turn it is
 Montgomery's 2 E T/L less the solid angle that L encloses in the body.
 
 Two moments that differ by rounding alone, less than 16 units in the last place, have the rates and angles of their mean

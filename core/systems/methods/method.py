@@ -66,7 +66,7 @@ class AbstractMethod(ABC):
     between_steps : str
         How samples come about whose times lie between the ends of steps.
     on_constraints : str
-        How constraints are kept, such as those of a described scene.
+        How constraints, such as those of a described scene, are enforced.
     when_to_use : str
         One sentence.
     """

@@ -1,4 +1,4 @@
-"""Submitted answers, graded: the reference is computed once for each question, each submission is judged by itself."""
+"""Grading: the reference is computed once for each problem, and each submission is judged by itself."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class AssessmentRequest(Request):
     )
     locale: Locale | None = Field(
         default=None,
-        description="Of who typed each `text`: whether its decimal mark is a point (en) or a comma (de, es, fr). "
+        description="Of each `text`: its decimal mark is a point (en) or a comma (de, es, fr). "
         "Without it a comma is one where it cannot group digits.",
     )
     language: Language = Field(default="en", description="Of the feedback.")
@@ -167,7 +167,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
     return PostRoute(
         "/v1/assessments",
         "assess",
-        "Submitted answers to any other question, graded: verdict, error, recognised mistakes",
+        "Student answers to any problem that the service can solve, graded: verdict, error, recognised mistakes",
         "assessment",
         AssessmentRequest,
         AssessmentAnswer,

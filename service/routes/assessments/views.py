@@ -19,7 +19,7 @@ class RecognisedMistake(View):
 
     tag: str = Field(description="Of an entry of GET /v1/mistakes.")
     credit: Ratio[float] = Field(description="Share of the score.")
-    feedback: str = Field(description="For who made it; it gives no number.")
+    feedback: str = Field(description="Feedback for the student; it gives no number.")
 
 
 class ClaimError(View):
@@ -38,7 +38,7 @@ class ConsistentMethod(View):
 
     method: str = Field(
         description="Kind, as in GET /v1/methods, or semi-implicit-euler, explicit-midpoint, heun; RK45, DOP853 or "
-        "LSODA of scipy.integrate.solve_ivp; exact for samples as right as their digits."
+        "LSODA of scipy.integrate.solve_ivp; exact for samples as accurate as their digits."
     )
     step: Seconds[float] | None = Field(description="Length of the steps; null for exact, and where it is chosen.")
     tolerance: Ratio[float] | None = Field(description="Relative, of a method that chooses its steps.")
@@ -75,7 +75,7 @@ class ClaimResult(View):
     correct: bool | None = Field(description="null if that cannot be said.")
     score: Ratio[float] | None = Field(description="From 0 to 1.")
     matches: list[RecognisedMistake] = Field(description="Mistakes by which the value comes out.")
-    feedback: str = Field(description="For who submitted it.")
+    feedback: str = Field(description="Feedback for the student, in the language of the request.")
     error: ClaimError | None = Field(default=None, description="Left out unless the reference is revealed.")
     samples: SamplesError | None = Field(
         default=None, description="Of samples of the angular velocity that are not right; left out likewise."
@@ -91,7 +91,7 @@ class SubmissionResult(View):
     format_errors: list[FaultView] = Field(description="What cannot be read, by pointer into the document sent.")
     tests: list[ClaimResult] = Field(description="Of the claims that can be read.")
     matches: list[str] = Field(description="Tags of all recognised mistakes.")
-    feedback: str = Field(description="For who submitted it.")
+    feedback: str = Field(description="Feedback for the student, in the language of the request.")
 
 
 class ReferenceFigure(View):

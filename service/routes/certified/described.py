@@ -34,7 +34,7 @@ Output = Literal["accelerations", "forces", "energy", "trajectory"]
 
 
 class CertifiedSceneRequest(SceneDescription):
-    """Bodies, what connects them, and to how many digits they are asked about."""
+    """Bodies, their connections, and the number of proven digits."""
 
     times: DecimalTimes | None = Field(
         default=None,

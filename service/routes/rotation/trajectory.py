@@ -117,7 +117,7 @@ class Accuracy(View):
         "and for scenes, where every column is relative to its own largest magnitude.",
     )
     horizon: Seconds[float] | None = Field(
-        default=None, description="Time after which input_uncertainty leaves nothing known of the phase."
+        default=None, description="Time after which input_uncertainty makes the phase unpredictable."
     )
     drifts: dict[str, Ratio[float]] = Field(
         description="Largest relative change of each conserved quantity; a drift is not an error."
@@ -129,7 +129,7 @@ class Accuracy(View):
         default=None, description="Angle by which the input uncertainty may turn the attitude, at most pi."
     )
     attitude_horizon: Seconds[float] | None = Field(
-        default=None, description="Time after which input_uncertainty leaves nothing known of the attitude."
+        default=None, description="Time after which input_uncertainty makes the attitude unpredictable."
     )
 
 

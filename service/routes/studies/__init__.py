@@ -116,7 +116,7 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     return StudyRoute(
         PATH,
         "create_study",
-        "A study: any other question with varied inputs, its members answered in the background",
+        "A study: any problem with varied inputs, computed in the background",
         "studies",
         StudyRequest,
         StudyState,

@@ -119,7 +119,7 @@ RESULTS: Mapping[str, Any] = {
 
 
 class StudyQuantile(View):
-    """The value below which a share of the members lies."""
+    """The value below which a share of the samples lies."""
 
     probability: Ratio[float]
     value: float = Field(description="In the unit of the figure.", json_schema_extra=WHOLE)
@@ -140,7 +140,7 @@ class StudyHistogram(View):
 
 
 class StudyStatistics(View):
-    """Statistics of one figure; null where they were not asked for or do not exist."""
+    """Statistics of one quantity; null where they were not requested or do not exist."""
 
     unit: str | None = Field(description="Of the figure.")
     present: int = Field(description="Members that have the figure.", json_schema_extra=WHOLE)

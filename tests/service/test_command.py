@@ -1,0 +1,110 @@
+"""The command polhode, run in this process; studies are sent to a server that plays the service."""
+
+from __future__ import annotations
+
+import json
+import threading
+import tomllib
+from collections.abc import Iterator
+from http.server import BaseHTTPRequestHandler, HTTPServer
+from pathlib import Path
+from typing import Any, ClassVar
+
+import pytest
+
+from service.command import main
+
+ROOT = Path(__file__).parents[2]
+
+
+class PlayedService(BaseHTTPRequestHandler):
+    """Accepts a study, has it run for two looks at its state, and has results."""
+
+    states: ClassVar[list[str]] = []
+
+    def do_POST(self) -> None:
+        study = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        if study != {"count": 2}:
+            self._write(422, {"title": "Invalid parameter", "detail": "count must be 2"})
+            return
+        type(self).states = ["running", "successful"]
+        self._write(202, {"jobID": "one", "status": "accepted", "progress": 0})
+
+    def do_GET(self) -> None:
+        if self.path.endswith("/results"):
+            self._write(200, {"accept": self.headers["Accept"]})
+        else:
+            self._write(200, {"jobID": "one", "status": self.states.pop(0), "progress": 50})
+
+    def _write(self, status: int, document: Any) -> None:
+        body = json.dumps(document).encode()
+        self.send_response(status)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, form: str, *values: object) -> None:
+        """Write no lines."""
+
+
+@pytest.fixture
+def played(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    monkeypatch.setattr("service.command.POLLING", 0.0)
+    server = HTTPServer(("127.0.0.1", 0), PlayedService)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+def test_grades_files_without_a_server(capsysbinary: pytest.CaptureFixture[bytes]) -> None:
+    main(["grade", str(ROOT / "examples/assessments/1f.json")])
+    answer = json.loads(capsysbinary.readouterr().out)
+    assert [result["score"] for result in answer["results"]] == [1.0, 0.5]
+
+
+def test_says_what_is_wrong_with_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "request.json"
+    with pytest.raises(SystemExit, match="No such file"):
+        main(["grade", str(file)])
+    file.write_text('{"question": {"path": "/v1/nothing", "request": {}}, "submissions": [{}]}')
+    with pytest.raises(SystemExit, match="/question/path"):
+        main(["grade", str(file)])
+
+
+def test_runs_a_study(played: str, tmp_path: Path) -> None:
+    file, output = tmp_path / "study.json", tmp_path / "results.parquet"
+    file.write_text('{"count": 2}')
+    main(["study", str(file), "--url", played, "--output", str(output)])
+    assert json.loads(output.read_text()) == {"accept": "application/vnd.apache.parquet"}
+
+
+def test_shows_the_problem_of_a_study(played: str, tmp_path: Path) -> None:
+    file = tmp_path / "study.json"
+    file.write_text('{"count": 3}')
+    with pytest.raises(SystemExit, match="count must be 2"):
+        main(["study", str(file), "--url", played, "--output", str(tmp_path / "results.json")])
+    with pytest.raises(SystemExit, match="must end in one of"):
+        main(["study", str(file), "--url", played, "--output", str(tmp_path / "results.txt")])
+    with pytest.raises(SystemExit, match="no service at"):
+        main(["study", str(file), "--url", "http://127.0.0.1:1", "--output", str(tmp_path / "results.json")])
+
+
+def test_makes_a_key_and_passes_options_on(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["new-key", "laboratory"])
+    assert "line for keys_file:  laboratory " in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        main(["serve", "--help"])
+    assert "POLHODE_PORT" in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        main(["openapi", "--port", "1"])
+
+
+def test_a_wheel_has_the_command_and_no_package_of_examples() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert project["project"]["scripts"] == {"polhode": "service.command:main"}
+    wheel = project["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert wheel["packages"] == ["core", "service"]
+    assert wheel["force-include"] == {"examples/scenes": "service/routes/scene_examples"}
