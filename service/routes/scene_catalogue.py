@@ -7,8 +7,13 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
+from pathlib import Path
 from typing import Any
+
+INSTALLED = Path(__file__).parent / "scene_examples"
+"""Where a wheel has the folder examples/scenes."""
+
+CHECKOUT = Path(__file__).parents[2] / "examples" / "scenes"
 
 
 @dataclass(frozen=True)
@@ -36,7 +41,7 @@ class CatalogueScene:
 @cache
 def scene_catalogue() -> Mapping[str, CatalogueScene]:
     """Return every described scene by name, in the order of the catalogue."""
-    folder = resources.files("examples").joinpath("scenes")
+    folder = INSTALLED if INSTALLED.is_dir() else CHECKOUT
     entries = tomllib.loads(folder.joinpath("catalogue.toml").read_text(encoding="utf-8"))
     return {
         name: CatalogueScene(**entry, question=json.loads(folder.joinpath(f"{name}.json").read_text(encoding="utf-8")))

@@ -1,0 +1,138 @@
+"""The command `polhode`: serve, grade, study, new-key and openapi.
+
+``polhode grade`` answers files of requests to ``POST /v1/assessments`` in this process, without a server.
+``polhode study`` sends a study to a running service, reports its progress and fetches its results.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from urllib.error import HTTPError, URLError
+from urllib.request import Request, urlopen
+
+from service import VERSION
+
+POLLING = 0.5
+"""Time between two looks at the state of a study (s)."""
+
+RESPONSE_TIMEOUT = 60.0
+"""Time that a response of the service may take (s)."""
+
+MEDIA_TYPES = {
+    ".json": "application/json",
+    ".npz": "application/x-npz",
+    ".parquet": "application/vnd.apache.parquet",
+    ".svg": "image/svg+xml",
+    ".zip": "application/vnd.zarr+zip",
+}
+"""Forms of a study's results, by the ending of the file that they are written to."""
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser("polhode", description="The motion of rigid bodies and small constrained systems.")
+    parser.add_argument("--version", action="version", version=VERSION)
+    commands = parser.add_subparsers(dest="command", required=True)
+    serve = commands.add_parser(
+        "serve", help="start the service; polhode serve --help lists every setting", add_help=False
+    )
+    serve.set_defaults(run=lambda options: _service(options.rest))
+    grade = commands.add_parser("grade", help="grade submissions without a server")
+    grade.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a request to POST /v1/assessments")
+    grade.set_defaults(run=_grade)
+    study = commands.add_parser("study", help="run a study on a running service")
+    study.add_argument("file", type=Path, metavar="FILE", help="a request to POST /v1/studies")
+    study.add_argument("--output", type=Path, required=True, help=f"ending in one of {', '.join(MEDIA_TYPES)}")
+    address = f"http://127.0.0.1:{os.environ.get('POLHODE_PORT') or '8000'}"
+    study.add_argument("--url", default=address, help=f"of the service (default {address})")
+    study.set_defaults(run=_study)
+    key = commands.add_parser("new-key", help="make a key for a client, and its line for keys_file")
+    key.add_argument("name")
+    key.set_defaults(run=lambda options: _service(["--new-key", options.name]))
+    document = commands.add_parser("openapi", help="write the OpenAPI document to standard output")
+    document.set_defaults(run=lambda options: _service(["--openapi"]))
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run a command."""
+    options, rest = parser().parse_known_args(arguments)
+    if rest and options.command != "serve":
+        parser().error(f"unrecognized arguments: {' '.join(rest)}")
+    options.rest = rest
+    options.run(options)
+
+
+def _service(arguments: Sequence[str]) -> None:
+    from service.__main__ import main as run
+
+    run(arguments)
+
+
+def _grade(options: argparse.Namespace) -> None:
+    from core.errors import MechanicsError
+    from core.systems.budget import Budget
+    from service.execution.request_handler import RequestHandler
+    from service.problems import Refusal, problem_of
+    from service.requests.request_reader import Limits
+    from service.responses.json_rows import written
+    from service.routes import questions
+
+    routes = {route.path: route for route in questions()}
+    handler, route = RequestHandler(routes.values(), Budget(), Limits()), routes["/v1/assessments"]
+    for file in options.files:
+        try:
+            answer = handler.answer(route, handler.read(route, _read(file)))
+        except (Refusal, MechanicsError) as error:
+            problem = error.problem if isinstance(error, Refusal) else problem_of(error)
+            sys.exit(f"{file}: {problem.body().decode()}")
+        sys.stdout.buffer.write(bytes(written(answer)) + b"\n")
+
+
+def _study(options: argparse.Namespace) -> None:
+    if options.output.suffix not in MEDIA_TYPES:
+        sys.exit(f"the output must end in one of {', '.join(MEDIA_TYPES)}")
+    state = json.loads(_sent(f"{options.url}/v1/studies", body=_read(options.file)))
+    address = f"{options.url}/v1/studies/{state['jobID']}"
+    while state["status"] in ("accepted", "running"):
+        sys.stderr.write(f"\r{state['status']}, {state.get('progress', 0)} %")
+        sys.stderr.flush()
+        time.sleep(POLLING)
+        state = json.loads(_sent(address))
+    sys.stderr.write(f"\r{state['status']}       \n")
+    if state["status"] != "successful":
+        sys.exit(str(state.get("message", state["status"])))
+    options.output.write_bytes(_sent(f"{address}/results", accept=MEDIA_TYPES[options.output.suffix]))
+
+
+def _read(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        sys.exit(f"{file}: {error.strerror}")
+
+
+def _sent(url: str, *, body: bytes | None = None, accept: str = "application/json") -> bytes:
+    """Return the response of a service; end with its problem, or with what keeps it from being reached."""
+    headers = {"Accept": accept} | ({} if body is None else {"Content-Type": "application/json"})
+    try:
+        with urlopen(Request(url, body, headers), timeout=RESPONSE_TIMEOUT) as response:
+            read: bytes = response.read()
+            return read
+    except HTTPError as refused:
+        with refused:
+            problem: Any = json.load(refused)
+        sys.exit(f"{problem['title']}: {problem.get('detail', '')}")
+    except URLError as error:
+        sys.exit(f"no service at {url}: {error.reason}")
+
+
+if __name__ == "__main__":
+    main()
