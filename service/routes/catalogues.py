@@ -48,7 +48,9 @@ class UndecidedEntry(View):
     type: str = Field(description="URI reference that problem carries in an answer.")
     title: str = Field(description="The same for every occurrence.")
     meaning: str
-    of_mechanics: bool = Field(description="Whether mechanics leaves it open; otherwise it is a limit of the solver.")
+    of_mechanics: bool = Field(
+        description="Whether the problem itself is indeterminate; otherwise it is a limit of the solver."
+    )
     documentation: str = Field(description="Its section in the documentation, from the root of the repository.")
 
 
@@ -75,7 +77,7 @@ class MethodEntry(View):
     family: Family
     preserves: list[Invariance]
     between_steps: str = Field(description="How samples come about whose times lie between the ends of steps.")
-    on_constraints: str = Field(description="How constraints are kept, such as those of a described scene.")
+    on_constraints: str = Field(description="How constraints, such as those of a described scene, are enforced.")
     when_to_use: str
     record: list[MethodRecord]
 
