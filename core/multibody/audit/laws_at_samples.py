@@ -15,6 +15,9 @@ from core.multibody.audit.failure import NOISE, ROUNDING, Ledger, Residual
 from core.multibody.audit.placement import STEP, Numbers, Placement, Undefined, dot, moved
 from core.multibody.audit.samples import Samples
 
+ANGULAR = frozenset({"attitude", "axis"})
+"""Measures that are formed of angles and cosines, which are known to rounding of one where everything is small."""
+
 States = Mapping[str, Numbers]
 """By the force of a one-sided measure, its state at every sample, as the phases of the answer say: "open", "closed",
 "stick", "slide", "slide back". Empty where the answer has no phases: strings are then taut."""
@@ -154,7 +157,8 @@ class _Connection:
             def measure(at: Samples, key: str = key) -> Numbers:
                 return connection.held(at.placement)[key]
 
-            self._hold(f"{key} held", measure, self.size, value.real)
+            size = max(1.0, self.size) if key in ANGULAR else self.size
+            self._hold(f"{key} held", measure, size, value.real)
             if self.known:
 
                 def change(at: Samples, key: str = key) -> Numbers:

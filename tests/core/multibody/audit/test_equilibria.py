@@ -98,3 +98,33 @@ def test_the_period_of_a_top_passes_without_accelerations() -> None:
     # How fast its velocity changes after the period is not known then.
     assert right("lagrange-top").answer.period is not None
     assert right("lagrange-top").failure() is None
+
+
+def test_whole_turns_of_welded_bodies_do_not_matter() -> None:
+    places = {"top": [-0.5, 0], "end": [0.5, 0]}
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {
+            "rod": {"mass": 1, "inertia": 0.1, "at": [0, -0.5], "angle": "-(pi/2)", "places": places},
+            "lump": {"mass": 1, "inertia": 0.01, "at": [0, -1], "angle": "pi/3"},
+        },
+        "connections": [
+            {"kind": "pin", "a": "rod.top", "b": [0, 0]},
+            {"kind": "weld", "a": "lump", "b": "rod.end"},
+        ],
+    }
+    one = answered(scene, (), ("equilibria",))
+    assert len(one.answer.equilibria or ()) == 2
+    assert one.failure() is None
+
+
+def test_an_attitude_in_the_origin_is_known_to_rounding() -> None:
+    axes = [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]
+    scene = {
+        "gravity": [0, 0, -10],
+        "bodies": {
+            "slide": {"mass": 1, "moments": ["1/12", "1/12", "1/100"], "at": [0, 0, 0], "axes": axes},
+        },
+        "connections": [{"kind": "slider", "a": "slide", "b": [0, 0, 0], "direction": [0, 0, 1]}],
+    }
+    assert answered(scene, (), ("accelerations",)).failure() is None
