@@ -213,7 +213,11 @@ class _Audit:
             searches, impacts, repeated, struck = None, None, np.zeros(0), np.zeros(0)
             if self.own and self.end > self.begin:
                 rated = sampler(np.zeros(1), False) if self.own_rows is None else self.own_rows.columns
-                places = {name: Pose(rated[f"{name}.position"].values) for name in description.bodies}
+                # How quick a motion is need not be known exactly: attitudes of the start do for it.
+                places = {
+                    name: Pose(rated[f"{name}.position"].values, body.start.rotation, body.start.turn)
+                    for name, body in description.bodies.items()
+                }
                 quick = quickness(description, places, *largest_rates(rated))
                 placed = windows(self.random, answer, self.begin, self.end, quick)
                 if any(event.impulses for event in answer.events):

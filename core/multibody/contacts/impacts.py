@@ -323,7 +323,7 @@ def _in_turn(
     for _ in range(_MOST_IN_TURN):
         hit = next((one for one in order if any(now[normal[i]] < -least for i in one)), None)
         if hit is None:
-            return _Outcome(total, works)
+            return _Outcome(_at_the_limit(total, now, least, found), works)
         impulses = impulses_at_once(unilateral, hit, now, found)
         if isinstance(impulses, Problem):
             return impulses
@@ -336,3 +336,19 @@ def _in_turn(
         now = {a: ZERO if is_zero(x) else x for a, x in now.items()}
     names = tuple(unilateral[i].name for one in order for i in one)
     return Problem("simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order")
+
+
+def _at_the_limit(total: Forces, now: RatesByLine, least: float, found: Responses) -> Forces:
+    """Return impulses that leave no rate at all where impacts in turn have left less than the least that counts.
+
+    What is left would be an impact again at the same instant. Where several shares of an impulse leave nothing, the
+    impulses are kept.
+    """
+    lines = [a for a, x in now.items() if total.get(a, ZERO) != 0 and float(abs(x)) <= least]
+    if all(now[a] == 0 for a in lines):
+        return total
+    try:
+        more = arb_mat([[found.matrix[a][b] for b in lines] for a in lines]).solve(arb_mat([[-now[a]] for a in lines]))
+    except ZeroDivisionError:
+        return total
+    return total | {a: total[a] + more[k, 0] for k, a in enumerate(lines)}

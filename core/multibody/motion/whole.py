@@ -121,7 +121,8 @@ class Whole:
     def reduced_arrays(self, parts: tuple[int, ...]) -> tuple[Packed, Units, list[int]]:
         """Return the reduced table of some parts for compiled code, its units, and its coordinates."""
         if parts not in self._packed:
-            where = sorted(i for k in parts for i in self.parts[k][0])
+            # A clock is in every part that it drives.
+            where = sorted({i for k in parts for i in self.parts[k][0]})
             table = restricted(self.reduced.table, where)
             units = units_of(table, [self.reduced_accelerations[i] for i in where])
             self._packed[parts] = (

@@ -122,3 +122,22 @@ def test_the_answer_to_another_scene_is_refused(key: str) -> None:
 @pytest.mark.parametrize("seed", range(0, 66, 3))
 def test_random_scenes_pass(seed: int) -> None:
     solve_scene(read(any_scene(seed)), np.linspace(0.0, 2.0, 9), OUTPUTS)
+
+
+@pytest.mark.parametrize("strength", [-5, 5])
+def test_what_pulls_at_a_place_beside_a_centre_is_audited(strength: int) -> None:
+    """How quick such a motion is depends on where the place is, and so on the attitude of its body."""
+    rod = {"mass": 1, "inertia": "1/12", "at": [0.5, 0], "places": {"top": [-0.5, 0], "end": [0.5, 0]}}
+    pin = {"kind": "pin", "a": "rod.top", "b": [0, 0]}
+    law = {"kind": "inverse-square", "a": "rod.end", "b": "point", "strength": strength}
+    bodies = {"rod": rod, "point": {"mass": 1, "at": [4, 0]}}
+    answer = solve_scene(read({"gravity": [0, -10], "bodies": bodies, "connections": [pin, law]}), [0.1, 0.2])
+    assert answer.trajectory is not None
+
+
+def test_an_attitude_is_known_beside_one_where_all_places_are_zero() -> None:
+    """A body at the origin whose axes are turned by a right angle: its quaternion has roots of a half, rounded."""
+    body = {"mass": 1, "moments": [0.1, 0.2, 0.15], "at": [0, 0, 0], "axes": [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]}
+    rail = {"kind": "slider", "a": "body", "b": [0, 0, 0], "direction": [1, 0, 0]}
+    answer = solve_scene(read({"gravity": [0, 0, -10], "bodies": {"body": body}, "connections": [rail]}), [0.5])
+    assert answer.trajectory is not None

@@ -480,3 +480,23 @@ def test_more_impacts_than_orders_are_tried_for_differ_or_are_refused_with_their
     assert answer.problem is not None
     assert answer.problem.code == "simultaneous-impacts"
     assert len(answer.problem.candidates) > 1
+
+
+@pytest.mark.parametrize("speed", ["3", "pi"])
+def test_impacts_in_an_order_that_end_as_a_limit_leave_nothing_for_another_one(speed: str) -> None:
+    """Three equal plastic balls share the momentum of the first, a third of its speed each, after one impact each."""
+    bodies = {
+        f"b{i}": {"mass": 1, "radius": 0.1, "inertia": 0.01, "at": [x, 0], "velocity": [0 if i else speed, 0]}
+        | {"angular_velocity": 0}
+        for i, x in enumerate(("-0.2", "0.2", "0.4"))
+    }
+    pairs = [
+        {"kind": "contact", "name": f"p{i}", "a": f"b{i}", "b": f"b{i + 1}", "restitution": 0, "order": i + 1}
+        for i in range(2)
+    ]
+    answer = solve_scene(read({"gravity": [0, 0], "bodies": bodies, "connections": pairs}), [0.3], ("trajectory",))
+    assert kinds(answer) == [("touch", "p0"), ("touch", "p1")]
+    first = math.pi if speed == "pi" else 3.0
+    assert [event.impulses["normal"] for event in answer.events] == pytest.approx([2 * first / 3, first / 3], rel=1e-15)
+    for i in range(3):
+        assert column(answer, f"b{i}.velocity").values[0] == pytest.approx([first / 3, 0], rel=1e-14)

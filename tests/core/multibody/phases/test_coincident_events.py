@@ -230,3 +230,28 @@ def test_weights_that_jerk_and_land_in_turn_come_to_rest(restitution: float, hea
         assert np.abs(own.values[:, 1] - place).max() <= own.error
         assert np.abs(rate.values).max() <= rate.error < 1e-8 * speed
         assert rate.scale >= speed
+
+
+@pytest.mark.parametrize(("rate", "stiffness"), [(1, 1), (2, 1), (3, 5)])
+def test_two_blades_that_are_driven_share_one_clock(rate: int, stiffness: int) -> None:
+    """Two points on a spring of no length meet their blades: x = 2.5 - 1.5 cos(w t) at the height 1, w^2 = 2 k/m."""
+    bodies: dict[str, Any] = {}
+    connections: list[dict[str, Any]] = []
+    for name, x, sense in (("l", 0, 1), ("r", 5, -1)):
+        blade = {"mass": 1, "inertia": 0.1, "at": [x, 0], "angular_velocity": sense * rate}
+        bodies |= {f"blade-{name}": blade, name: {"mass": 1, "at": [x + sense, 1], "velocity": [0, 0]}}
+        connections += [
+            {"kind": "pin", "a": f"blade-{name}", "b": [x, 0]},
+            {"kind": "motor", "name": f"motor-{name}", "a": f"blade-{name}", "rate": sense * rate},
+            {"kind": "contact", "name": f"touch-{name}", "place": name, "on": {"at": f"blade-{name}"}},
+        ]
+    spring = {"kind": "spring", "a": "l", "b": "r", "stiffness": stiffness, "rest_length": 0}
+    answer = solve_scene(read({"gravity": [0, 0], "bodies": bodies, "connections": [*connections, spring]}), [0.7])
+    w = math.sqrt(2 * stiffness)
+
+    def above(t: Any) -> Any:
+        return mpmath.cos(rate * t) - mpmath.sin(rate * t) * (2.5 - 1.5 * mpmath.cos(w * t))
+
+    time = float(mpmath.findroot(above, (0.05, 0.9), solver="anderson"))
+    assert kinds(answer)[:2] == ([("touch", "touch-l"), ("touch", "touch-r")] if time < 0.7 else [])
+    assert [event.time for event in answer.events[:2]] == pytest.approx([time, time][: len(answer.events)], rel=1e-13)

@@ -223,7 +223,7 @@ def chain(draw: Draw) -> Unit:
 def in_a_row(draw: Draw) -> Unit:
     """Return two or three equal beads on one wire that meet one after another, or in an order that is given."""
     count, e = draw.one((2, 3, 3)), draw.one((0, 0.5, 1, 1))
-    names = [draw.name(f"bead{i}") for i in range(count)]
+    names = [draw.name(f"row{i}") for i in range(count)]
     near = 0.4 if draw.chance(0.5) else 0.2
     m, v = draw.mass(), draw.one((1, 2, 3))
     found = Unit(ends=[names[-1]])
