@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -51,6 +52,29 @@ def size_of(description: Description, samples: Samples, moving: Numbers) -> Numb
         total = total + body.mass * pull * np.abs(samples.placement[name].position).max(axis=-1)
     for connection in description.connections:
         total = total + np.abs(connection.potential(samples.placement))
+    return total
+
+
+def potential_error(description: Description, samples: Samples, rounding: float) -> Numbers:
+    """Return by how much rounding of places and turns moves the potential energy (J), shape (n,), also at zero.
+
+    Parameters
+    ----------
+    rounding : float
+        Share of the largest coordinate to which places are known, and of half a turn.
+    """
+    placed = samples.placement
+    size = np.max([np.abs(one.position).max(axis=-1) for one in placed.values()], axis=0)
+    at_rest, total = potential(description, samples), np.zeros(())
+    for name, one in placed.items():
+        moved = [
+            one._replace(position=one.position + rounding * size[:, None] * e) for e in np.eye(one.position.shape[-1])
+        ]
+        if one.turn is not None:
+            moved.append(one._replace(turn=one.turn + rounding * (np.pi + np.abs(one.turn))))
+        for other in moved:
+            beside = replace(samples, placement={**placed, name: other})
+            total = total + np.abs(potential(description, beside) - at_rest)
     return total
 
 

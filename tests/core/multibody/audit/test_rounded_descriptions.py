@@ -38,3 +38,19 @@ def test_axes_and_places_of_nine_digits(kind: str, origin: bool, seed: int) -> N
     answer = solve_scene(read(scene), [0.1, 0.3])
     assert answer.trajectory is not None
     assert len(answer.trajectory.columns["b.position"].values) == 2
+
+
+@pytest.mark.parametrize("stretch", ["0", "1e-12", "-1e-8", "1e-4"])
+@pytest.mark.parametrize("origin", ["0", "1.7", "-1234.56"])
+def test_the_energy_of_a_spring_near_its_natural_length_is_known_to_rounding_of_its_places(
+    stretch: str, origin: str
+) -> None:
+    """An answer that the audit refuses is an error."""
+    spring = {"kind": "spring", "a": "b", "b": [origin, origin], "stiffness": 100, "rest_length": f"0.5 - ({stretch})"}
+    body = {"mass": 1, "at": [f"{origin} + 0.4", f"{origin} + 0.3"]}
+    turned = {"mass": 1, "inertia": 1, "at": [5, 5], "angle": f"1 + ({stretch})"}
+    torsion = {"kind": "torsion-spring", "a": "c", "stiffness": 7, "rest_angle": 1}
+    scene = {"gravity": [0, 0], "bodies": {"b": body, "c": turned}, "connections": [spring, torsion]}
+    answer = solve_scene(read(scene), [0.5])
+    assert answer.energy is not None
+    assert answer.energy.potential == pytest.approx(53.5 * float(stretch) ** 2)
