@@ -10,7 +10,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 PIP += --no-compile
 
 .PHONY: serve test check kernels environment openapi judge plans record peers peers-scenes newest clean
-.PHONY: browser pictures vendor site
+.PHONY: browser pictures vendor site release release-contract
 
 serve: $(ENV)/runs
 	@$(BIN)/python -m service
@@ -44,6 +44,14 @@ $(ENV)/made: requirements-dev.lock | $(ENV)/bin/python
 	@echo "installing the packages of requirements-dev.lock into $(ENV), once..."
 	@$(PIP) -r requirements-dev.lock
 	@touch $@ $(ENV)/runs
+
+# Wheel, client package, site and the promises of the API, which later versions are held to.
+release: openapi release-contract site
+	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir build/release . ./clients/python
+	git archive --output build/release/image-context.tar.gz HEAD Dockerfile requirements.lock core service examples
+
+release-contract: environment
+	$(BIN)/python -m tests.service.openapi.contract docs/openapi.json > docs/releases/$$($(BIN)/python -c 'from service import VERSION; print(VERSION)').json
 
 openapi: environment
 	$(BIN)/python -m service --openapi > docs/openapi.json

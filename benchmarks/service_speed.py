@@ -96,7 +96,7 @@ def __getattr__(name: str) -> Any:
 def _bare() -> Any:
     from service.responses.json_rows import written
 
-    body = written(answer() | {"signature": {"source": "polhode", "version": "0.1.0"}, "warnings": ()})
+    body = written(answer() | {"signature": {"source": "polhode", "version": "1.0.0"}, "warnings": ()})
     headers = [(b"content-type", b"application/json"), (b"content-length", b"%d" % len(body))]
 
     async def app(scope: Any, receive: Any, send: Any) -> None:

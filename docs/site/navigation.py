@@ -52,6 +52,7 @@ def navigation() -> list[Any]:
                 {"Numbers you can cite": "numbers.md"},
                 {"Catalogue of scenes": "physics/scene-catalogue.md"},
                 {"Changelog": "changelog.md"},
+                {"History of version 1.0.0": "history.md"},
             ]
         },
         {"Physics": [f"physics/{name}.md" for name in PHYSICS.split()]},

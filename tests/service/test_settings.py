@@ -83,7 +83,7 @@ def test_defaults() -> None:
 
 
 def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
-    for option, text in (("--help", "POLHODE_PORT"), ("--version", "0.1.0")):
+    for option, text in (("--help", "POLHODE_PORT"), ("--version", "1.0.0")):
         with pytest.raises(SystemExit) as stop:
             main([option])
         assert stop.value.code == 0

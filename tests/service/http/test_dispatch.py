@@ -46,7 +46,7 @@ async def test_an_answer_has_signature_and_warnings(client: httpx.AsyncClient) -
     answer = response.json()
     assert response.status_code == 200
     assert list(answer) == ["signature", "warnings", "time", "position", "nothing"]
-    assert answer["signature"] == {"source": "polhode", "version": "0.1.0"}
+    assert answer["signature"] == {"source": "polhode", "version": "1.0.0"}
     assert answer["warnings"] == [{"code": "toy", "detail": "this is a toy", "pointer": "/body/moments/0"}]
     assert answer["time"] == [0.0, 0.5, 1.0]
     assert int(response.headers["content-length"]) == len(response.content)
