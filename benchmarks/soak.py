@@ -1,8 +1,8 @@
 """A bounded mix of load and faults against a real server: every answer is checked against core, memory must stay flat.
 
 Run: python -m benchmarks.soak [seconds]. Everything stays on 127.0.0.1. Faults: compute processes killed one by one and
-all at once, clients that leave while they ask, while they wait and while they are answered, garbage, more large
-questions than are admitted. Only processes that the server itself started are killed.
+all at once, clients that leave while they ask, while they wait and while they are answered, clients that read slowly,
+garbage, more large questions than are admitted. Only processes that the server itself started are killed.
 """
 
 from __future__ import annotations
@@ -38,6 +38,12 @@ PRECESSION, TRAJECTORY = "/v1/rotation/precession", "/v1/rotation/trajectory"
 
 MOST_GROWTH = 0.05
 """Megabytes per second by which a server's memory may seem to grow after its first fifth."""
+
+MOST_DESCRIPTORS = 2.0
+"""Open files per minute by which their number may seem to grow, where clients come and go all the time."""
+
+SLOWLY = 10.0
+"""Seconds for which a client reads a thousand bytes ten times a second of an answer that has megabytes."""
 
 
 class Soak:
@@ -143,7 +149,7 @@ class Soak:
         streamed = json.dumps(LONG).encode()
         head = b"POST %s HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\n" % TRAJECTORY.encode()
         while time.monotonic() < self.until:
-            kind = draw.choice(["left waiting", "left asking", "left being answered", "garbage", "kill", "kill all"])
+            kind = draw.choice([*LEAVING, "garbage", "kill", "kill all"])
             if kind.startswith("kill"):
                 workers = self.server.compute_processes()
                 for worker in workers if kind == "kill all" else draw.sample(workers, min(1, len(workers))):
@@ -157,12 +163,16 @@ class Soak:
                     sent = {
                         "left waiting": head + b"content-length: %d\r\n\r\n" % len(body) + body,
                         "left being answered": head + b"content-length: %d\r\n\r\n" % len(streamed) + streamed,
+                        "left after reading slowly": head + b"content-length: %d\r\n\r\n" % len(streamed) + streamed,
                         "left asking": head + b"content-length: 1000\r\n\r\n" + body[:50],
                         "garbage": draw.randbytes(2000),
                     }
                     connection.sendall(sent[kind])
                     if kind == "left being answered":
                         connection.recv(20_000)
+                    end = time.monotonic() + SLOWLY
+                    while kind == "left after reading slowly" and time.monotonic() < end and connection.recv(1000):
+                        time.sleep(0.1)
                     time.sleep(draw.uniform(0.0, 0.1))
             self.outcomes[f"fault: {kind}"] += 1
             time.sleep(draw.uniform(0.3, 3.0))
@@ -180,6 +190,8 @@ class Soak:
             self.lost.append(f"{path}: {error!r}")
             return 0, None, time.perf_counter() - since
 
+
+LEAVING = ("left waiting", "left asking", "left being answered", "left after reading slowly")
 
 GROUPS = ((("small", 1), ("small", 2)), (("large", 3), ("large", 4)), (("crowd", 5), ("faults", 6)))
 """Which clients share a process, with their seeds: those that compare large answers would make the others late."""
@@ -214,12 +226,12 @@ def resident(process: int) -> float:
 
 
 class Memory:
-    """How much the server and its compute processes take, as time goes by."""
+    """How much the server and its compute processes take (MB), and its open files, as time goes by."""
 
     def __init__(self, server: Server) -> None:
         self.server = server
         self.times: list[float] = []
-        self.kinds: dict[str, list[float]] = {"server": [], "largest compute process": []}
+        self.kinds: dict[str, list[float]] = {"server": [], "largest compute process": [], "open files": []}
 
     def look(self) -> None:
         """Take one sample."""
@@ -231,9 +243,10 @@ class Memory:
         self.times.append(time.monotonic())
         self.kinds["server"].append(resident(self.server.pid))
         self.kinds["largest compute process"].append(max(workers))
+        self.kinds["open files"].append(len(os.listdir(f"/proc/{self.server.pid}/fd")))
 
     def figures(self) -> dict[str, dict[str, float]]:
-        """Return first, last, most (MB) and the slope (MB/min) after the first fifth, which fills caches."""
+        """Return first, last, most and the slope per minute after the first fifth, which fills caches."""
         start = len(self.times) // 5
         found = {}
         for name, own in self.kinds.items():
@@ -276,14 +289,16 @@ def main(seconds: float = 300.0) -> None:
         "lost": len(soak.lost),
         "first_wrong_or_lost": (soak.wrong + soak.lost)[:20],
         "milliseconds": {kind: quantiles(waits) for kind, waits in soak.waits.items() if waits},
-        "memory_MB": memory.figures(),
+        "taken": memory.figures(),
         "left": left,
     }
     (RESULTS / "soak.json").write_text(json.dumps(result, indent=2) + "\n")
     print(json.dumps(result, indent=2))
     assert not soak.wrong, "an answer was wrong"
     assert not soak.lost, "an answer was lost"
-    assert result["memory_MB"]["server"]["slope_per_minute"] < 60.0 * MOST_GROWTH, "memory grew"
+    taken = memory.figures()
+    assert taken["server"]["slope_per_minute"] < 60.0 * MOST_GROWTH, "memory grew"
+    assert taken["open files"]["slope_per_minute"] < MOST_DESCRIPTORS, "open files are left"
 
 
 if __name__ == "__main__":

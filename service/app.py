@@ -25,6 +25,7 @@ from service.execution.supervision import end_with_supervisor, remove_temporary_
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
 from service.http.target import host_of, is_allowed, path_of_target
+from service.observability import traces
 from service.observability.logs import LOG, configure
 from service.observability.metrics import Metrics
 from service.openapi.document import ABOUT, openapi, serve_routes
@@ -123,8 +124,8 @@ class Service(FastAPI):
             app,
             allow_origins=origins,
             allow_methods=("GET", "HEAD", "POST", "DELETE"),
-            allow_headers=("authorization", "content-type", "if-none-match", "x-request-id"),
-            expose_headers=("etag", "location", "retry-after", "server-timing", "x-request-id"),
+            allow_headers=("authorization", "content-type", "if-none-match", "prefer", "traceparent", "x-request-id"),
+            expose_headers=("etag", "location", "preference-applied", "retry-after", "server-timing", "x-request-id"),
             max_age=3600,
         )
 
@@ -145,6 +146,7 @@ class Service(FastAPI):
             # Servers configure their own logging, not that of an application.
             configure(self.settings.log_level)
         self._starting = True
+        end_traces = traces.export() if self.settings.traces else None
         kept_up = [self._warm(), self._publish(), self._bodies.watch(), self._supervisor.watch()]
         if self._keys is not None:
             kept_up.append(self._keys.follow())
@@ -163,6 +165,8 @@ class Service(FastAPI):
             await asyncio.gather(*tasks, return_exceptions=True)
             await asyncio.gather(self.compute.stop(), self._supervisor.stop())
             self._supervisor.store.close()
+            if end_traces is not None:
+                await run_in_daemon_thread(end_traces)
             remove_temporary_files()
 
     async def _warm(self) -> None:

@@ -172,6 +172,12 @@ class Settings(BaseSettings):
         default=1e6, gt=0, description="Largest predicted processor time of a study, in seconds (422)."
     )
 
+    traces: bool = Field(
+        default=False,
+        description="Whether OpenTelemetry traces are sent, by OTLP over HTTP to where the variables "
+        "OTEL_EXPORTER_OTLP_* say; needs the extra polhode[traces].",
+    )
+
     keys_file: Annotated[FilePath, BeforeValidator(_named)] | None = Field(
         default=None,
         description="File of accepted keys, one per line: name, SHA-256, requests per second, seconds of work "

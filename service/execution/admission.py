@@ -20,6 +20,7 @@ from service.execution.worker import Failed, Task, serve, terms_of
 from service.execution.worker_pool import Processes
 from service.http.keys import Key
 from service.http.limits import ClientGone
+from service.observability import traces
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.problems import Problem, Refusal
@@ -155,7 +156,9 @@ class Compute:
         )
         watch = asyncio.ensure_future(sender.gone())
         try:
-            await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
+            with traces.computing(task.path) as span:
+                await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
+                span.set_attribute("polhode.used_seconds", job.seconds)
             if not job.reply.done():
                 raise ClientGone
             result = self._result(job)

@@ -14,6 +14,7 @@ from service.http.compression import LEAST, Coding, Compressor, coding_for, comp
 from service.http.etag import JSON, NOSNIFF, Header, Representation
 from service.http.keys import Key
 from service.http.limits import ClientGone
+from service.observability import traces
 from service.observability.request_records import Records
 from service.problems import MEDIA_TYPE, Problem
 
@@ -42,6 +43,7 @@ class RequestContext:
         "_records",
         "_send",
         "_since",
+        "_span",
         "headers",
         "identity",
         "key",
@@ -59,6 +61,7 @@ class RequestContext:
         self.started = False
         self.key: Key | None = None
         self.identity = records.id_of(self.headers.get(b"x-request-id"))
+        self._span = traces.begun(operation, scope["method"], self.id, self.headers)
 
     @property
     def id(self) -> str:
@@ -226,6 +229,7 @@ class RequestContext:
     def close(self, status: int) -> None:
         """Count the request as finished."""
         seconds = perf_counter() - self._since
+        traces.ended(self._span, status)
         key = None if self.key is None else self.key.name
         self._records.finished(self.identity, self.operation, self.scope["method"], status, seconds, key)
 
