@@ -58,10 +58,10 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
     times : ndarray, shape (n,)
         Those of the question.
     """
-    description = description_of(scene)
-    if not description.moderate or answer.phases == ():
-        return None
-    with np.errstate(over="ignore", invalid="ignore"):
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        description = description_of(scene)
+        if not description.moderate or answer.phases == ():
+            return None
         return _Audit(description, answer, times).worst(sampler)
 
 

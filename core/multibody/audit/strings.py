@@ -26,6 +26,7 @@ from core.multibody.audit.placement import (
     Numbers,
     Place,
     Placement,
+    Undefined,
     across,
     angle,
     dot,
@@ -186,6 +187,11 @@ def straight(a: Knot, b: Knot, sides: tuple[str | None, str | None], placement: 
     ----------
     sides : tuple of two strings or None
         "left", "right", "below" or "above": where it touches the drum, as seen from the centre of that.
+
+    Raises
+    ------
+    Undefined
+        Where doubles do not show it.
     """
     for first in (1, -1) if a.radius else (0,):
         for second in (1, -1) if b.radius else (0,):
@@ -197,7 +203,8 @@ def straight(a: Knot, b: Knot, sides: tuple[str | None, str | None], placement: 
             ways = [sense * across(u) for sense in part.senses]
             if all(side is None or _is_on(way, side) for way, side in zip(ways, sides, strict=True)):
                 return Straight(a, b, (first, second), tuple(u.tolist()))
-    raise ValueError("the description has been read, so that its sides decide the course of the string")
+    # The description has been read: its sides decide the course of the string, but not in doubles.
+    raise Undefined("a string whose course doubles do not resolve")
 
 
 def _is_on(way: Numbers, side: str) -> bool:

@@ -7,7 +7,7 @@ are found is not proven. Coordinates that a motion from the given start would ne
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence, Set
 from itertools import chain
 from math import hypot, inf, isfinite, nextafter
 
@@ -82,7 +82,11 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
     start = state(table, units)[0][:, 0]
     places = solutions_of(equations, start, len(table.names) - len(chosen))
     resting = RestingPlaces(found, small)
-    refined = _different((place for q, x in places for place in [exact.place(q, x)] if place is not None), exact)
+    turns = {j for tie in ties.values() for key in tie.turn for j in key}
+    found_places = [place for q, x in places for place in [exact.place(q, x)] if place is not None]
+    # Of places that differ by whole turns alone that with the fewest is kept.
+    found_places.sort(key=lambda place: sum(abs(float(place.q[j] - table.q[j])) for j in turns))
+    refined = _different(found_places, exact, turns)
     beside = (
         other
         for place in refined
@@ -90,7 +94,7 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
         for direction in soft_directions(exact, place)
         for other in places_beside(exact, place, direction)
     )
-    refined = _different(chain(list(refined), beside), exact)
+    refined = _different(chain(list(refined), beside), exact, turns)
     answers = [
         (exact.potential(place.q), _described(found, small, exact, place))
         for place in refined
@@ -114,12 +118,22 @@ def _tie(found: Described, small: Reduced, turn: int | None, direction: tuple[in
     return Tie(now, cosine, sine, q[turn], arb.atan2(q[direction[1]], q[direction[0]]))
 
 
-def _different(places: Iterator[ExactPlace], equations: RestEquations) -> list[ExactPlace]:
-    """Return places without those that are one of the others."""
+def _different(places: Iterable[ExactPlace], equations: RestEquations, turns: Set[int]) -> list[ExactPlace]:
+    """Return places without those that are one of the others, where turns alone differ with the same moments.
+
+    Parameters
+    ----------
+    turns : set of int
+        Coordinates that count turns, of directions that are coordinates themselves.
+    """
     kept: list[ExactPlace] = []
+    compared = [i for i in range(equations.count if not turns else len(equations.sizes)) if i not in turns]
     for place in places:
+        here = [*place.q, *place.multipliers]
         if all(
-            any(_apart(x, y, size) for x, y, size in zip(place.q, one.q, equations.sizes, strict=False)) for one in kept
+            any(_apart(here[i], other[i], equations.sizes[i]) for i in compared)
+            for one in kept
+            for other in [[*one.q, *one.multipliers]]
         ):
             kept.append(place)
     return kept
@@ -144,11 +158,12 @@ def _described(found: Described, small: Reduced, equations: RestEquations, place
         centre = [where[i] for i in frame.position]
         positions[name] = tuple(map(in_doubles, centre))
         wrong[name] = _length(list(map(error_in_doubles, centre)))
-        if frame.direction is not None:
+        if frame.turn is not None:
+            # What twists a spring counts whole turns.
+            angle = where[frame.turn]
+        elif frame.direction is not None:
             c, s = frame.direction
             angle = arb.atan2(where[s], where[c])
-        elif frame.turn is not None:
-            angle = where[frame.turn]
         else:
             continue
         angles[name] = in_doubles(angle)

@@ -128,3 +128,28 @@ def test_an_attitude_in_the_origin_is_known_to_rounding() -> None:
         "connections": [{"kind": "slider", "a": "slide", "b": [0, 0, 0], "direction": [0, 0, 1]}],
     }
     assert answered(scene, (), ("accelerations",)).failure() is None
+
+
+def test_springs_that_twist_have_each_place_once_with_its_whole_turns() -> None:
+    places = {"top": [-0.5, 0], "end": [0.5, 0]}
+    one = {"mass": 1, "inertia": "1/12", "at": [0.4, -0.3], "angle": "-(atan(3/4))", "places": places}
+    connections = [
+        {"kind": "pin", "a": "one.top", "b": [0, 0]},
+        {"kind": "pin", "a": "two.top", "b": "one.end"},
+        {"kind": "torsion-spring", "a": "two", "b": "one", "stiffness": 5},
+    ]
+    bodies = {"one": one, "two": {**one, "angle": "-(atan(3/4)) + pi"}}
+    found = answered({"gravity": [0, -9.81], "bodies": bodies, "connections": connections}, (), ("equilibria",))
+    assert found.failure() is None
+    # The spring is relaxed by half a turn: both rods hang or stand folded, or the knee is bent to either side.
+    twists = sorted(round(place.angles["two"] - place.angles["one"], 3) for place in found.answer.equilibria or ())
+    assert len(twists) == 4
+    assert twists[1:3] == [round(np.pi, 3)] * 2
+    assert twists[0] + twists[3] == pytest.approx(2.0 * np.pi, abs=2e-3)
+
+
+def test_a_string_whose_course_doubles_do_not_resolve_is_not_compared() -> None:
+    yoyo = {"mass": 0.1, "radius": 0.01, "inertia": 4e-5, "at": [0.01, -0.5]}
+    string = {"kind": "string", "through": [[0, -1e300], "yo-yo"], "sides": {"yo-yo": "left"}}
+    scene = {"gravity": [0, -9.81], "bodies": {"yo-yo": yoyo}, "connections": [string]}
+    assert answered(scene, np.array([1.0]), ("accelerations", "trajectory")).failure() is None
