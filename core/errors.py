@@ -3,6 +3,7 @@
 * MechanicsError
   - InvalidParameter (ValueError)
       - SlackAtStart
+      - PlacesDisagree
       - UnphysicalInertia
       - OpenMesh
   - NotApplicable
@@ -79,6 +80,10 @@ class InvalidParameter(MechanicsError, ValueError):
 
 class SlackAtStart(InvalidParameter):
     """A string is longer than its way: the scene begins with it slack."""
+
+
+class PlacesDisagree(InvalidParameter):
+    """The places of bodies do not satisfy a connection."""
 
 
 class UnphysicalInertia(InvalidParameter):

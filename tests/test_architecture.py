@@ -61,7 +61,7 @@ MULTIBODY_LAYERS = (
     {"language", "answer"},
     {"table", "audit"},
     {"equations"},
-    {"reduction"},
+    {"reduction", "assembly"},
     {"contacts", "motion"},
     {"search"},
     {"trajectory", "statics", "start"},
@@ -261,6 +261,10 @@ TESTED_IN |= {
             "audit/joint_definitions audit/joints audit/law_definitions audit/laws "
             "audit/newton audit/placement audit/rolling audit/string_definitions "
             "audit/strings audit/surfaces"
+        ),
+        "assembly/test_assembled_scene": (
+            "assembly/described_bodies assembly/exact_places assembly/metric assembly/misfit assembly/nearest_places "
+            "assembly/nearest_that_fits assembly/nearest_velocities assembly/quadratics"
         ),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "

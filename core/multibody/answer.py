@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
-from core.multibody.model_answer import SceneModel, SmallMotion
+from core.multibody.model_answer import Assembly, SceneModel, SmallMotion
 from core.multibody.undecided import Code
 from core.quantities import Unit
 from core.systems.trajectory import How, MotionEvent, Trajectory
@@ -302,3 +302,4 @@ class SceneSolution:
     phases: tuple[MotionPhase, ...] | None = None
     problem: SceneProblem | None = None
     thresholds: tuple[RestRange, ...] | None = None
+    assembly: Assembly | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -96,3 +97,88 @@ class SceneModel:
     described: tuple[int, int]
     apart: tuple[PartModel, ...]
     noticed: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class AssembledBody:
+    """A body at the place that was found for it.
+
+    Attributes
+    ----------
+    at : tuple of float
+        Centre of mass (m).
+    angle : float or None
+        In the plane, of bodies whose direction matters (rad).
+    axes : tuple of three tuples, or None
+        In space, the directions of the body axes.
+    moved : float
+        Distance of the centre of mass from the sketch (m).
+    turned : float
+        Angle from the sketch, in the plane counter-clockwise (rad).
+    errors : mapping of str to float or None
+        Of the other fields, of a vector its largest component.
+    """
+
+    at: tuple[float, ...]
+    angle: float | None
+    axes: tuple[tuple[float, ...], ...] | None
+    moved: float
+    turned: float
+    errors: Mapping[str, float | None]
+
+
+@dataclass(frozen=True)
+class FourBarLinkage:
+    """A planar four-bar linkage.
+
+    Attributes
+    ----------
+    links : tuple of str
+        In the order of the loop, from the ground on if that is a link.
+    lengths : tuple of float
+        Distances of their joints (m).
+    kind : str
+        crank-rocker, double-crank, double-rocker, triple-rocker (no link turns fully), change-point.
+    margin : float
+        By how much the shortest and the longest link together are shorter than the other two (m); Grashof's condition
+        is that it is not negative.
+    branch : str
+        "open", or "crossed" where the quadrilateral of its joints crosses itself.
+    errors : mapping of str to float
+        Of the lengths and the margin (m).
+    """
+
+    links: tuple[str, ...]
+    lengths: tuple[float, ...]
+    kind: str
+    margin: float
+    branch: str
+    errors: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """How the start satisfies the connections, nearest to the places that were given.
+
+    Attributes
+    ----------
+    distance : float
+        Root of the sum over the bodies of the mean square of the displacements of their points (m).
+    bodies : mapping of str to AssembledBody
+    others : tuple of float
+        Distances of other places that satisfy the connections and are nearest among their neighbours (m), as far as
+        they were found.
+    velocities_changed : bool
+        Whether given velocities were changed to the nearest that the connections allow.
+    four_bar : FourBarLinkage or None
+        If the scene is one.
+    errors : mapping of str to float or None
+        Of the distance and of the others (m).
+    """
+
+    distance: float
+    bodies: Mapping[str, AssembledBody]
+    others: tuple[float, ...]
+    velocities_changed: bool
+    four_bar: FourBarLinkage | None
+    errors: Mapping[str, float | None]

@@ -10,10 +10,14 @@ import numpy as np
 
 from core.arrays import Floats
 from core.balls import precision
-from core.errors import InvalidParameter, SelfCheckFailed
+from core.errors import InvalidParameter, PlacesDisagree, SelfCheckFailed
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.answer import SceneSolution
+from core.multibody.assembly.assembled_scene import assembled
+from core.multibody.assembly.nearest_that_fits import with_nearest
 from core.multibody.audit.audit import audited
+from core.multibody.audit.failure import Failure
+from core.multibody.audit.nearest import audited_assembly
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.parts.joined_answer import answered_by_parts
@@ -121,6 +125,9 @@ def solve_scene(
             raise InvalidParameter(
                 ("outputs", i), f"be one of {', '.join(OUTPUTS)}", remedy=did_you_mean(output, OUTPUTS)
             )
+    found = assembled(scene)
+    if found.assembly is not None and budget.audited:
+        _require(audited_assembly(scene, found.scene))
     with precision(BITS):
         of_motion = [_of_motion(output, i, scene) for i, output in enumerate(outputs)]
         request = SceneRequest(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget)
@@ -129,8 +136,16 @@ def solve_scene(
             for i, output in enumerate(outputs)
             if isinstance(output, RestOf)
         ]
-        answer = answered_by_parts(scene, request, _checked)
-        return replace(answer, trajectory=_with_notices(answer, request), thresholds=tuple(ranges) or None)
+        try:
+            answer = answered_by_parts(found.scene, request, _checked)
+        except PlacesDisagree as fault:
+            raise with_nearest(fault, found.scene) from fault
+        return replace(
+            answer,
+            trajectory=_with_notices(answer, request),
+            thresholds=tuple(ranges) or None,
+            assembly=found.assembly,
+        )
 
 
 def _of_motion(output: str | When | ExtremesOf | RestOf, index: int, scene: Scene) -> str | ValueSearch | ExtremesOf:
@@ -154,7 +169,12 @@ def _with_notices(answer: SceneSolution, request: SceneRequest) -> Trajectory | 
 def _checked(scene: Scene, request: SceneRequest) -> SceneSolution:
     """Answer a question about a scene as one part, and check the answer against the description."""
     answer, system = answered(scene, request)
-    failure = audited(scene, answer, system.sampled, request.times) if request.budget.audited else None
+    if request.budget.audited:
+        _require(audited(scene, answer, system.sampled, request.times))
+    return answer
+
+
+def _require(failure: Failure | None) -> None:
+    """Raise `SelfCheckFailed` for a law that an answer does not keep."""
     if failure is not None:
         raise SelfCheckFailed(failure.law, failure.connection, failure.time, failure.residual, failure.allowed)
-    return answer

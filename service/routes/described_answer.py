@@ -207,6 +207,50 @@ class AtStart(Envelope, Generic[N]):
     energy: StartEnergy[N] | None = None
 
 
+class AssembledBody(View):
+    """A body at the place that was found for it."""
+
+    at: Metres = Field(description="Centre of mass.")
+    angle: Radians[float] | None = Field(description="In the plane; null for particles.")
+    axes: list[list[Ratio[float]]] | None = Field(description="In space, the directions of its axes; null elsewhere.")
+    moved: Annotated[float, Unit("m")] = Field(description="Distance of its centre of mass from the sketch.")
+    turned: Radians[float] = Field(description="Angle from the sketch, in the plane counter-clockwise.")
+    errors: Errors = Field(description="Bounds of the errors, by the names of the fields; of vectors, of a component.")
+
+
+class FourBarLinkage(View):
+    """A planar four-bar linkage."""
+
+    links: list[str] = Field(description="In the order of the loop, from the ground on if that is a link.")
+    lengths: list[Annotated[float, Unit("m")]] = Field(description="Distances of their joints.")
+    kind: Literal["crank-rocker", "double-crank", "double-rocker", "triple-rocker", "change-point"] = Field(
+        description="By which link turns fully relative to the others; of a triple-rocker none does."
+    )
+    margin: Annotated[float, Unit("m")] = Field(
+        description="By how much the shortest and the longest link together are shorter than the other two: Grashof's "
+        "condition is that it is not negative."
+    )
+    branch: Literal["open", "crossed"] = Field(description="Whether the quadrilateral of its joints crosses itself.")
+    errors: Errors = Field(description="Bounds of the errors of the lengths and the margin.")
+
+
+class Assembly(View):
+    """The start that satisfies the connections, nearest to the places that were given."""
+
+    distance: Annotated[float, Unit("m")] = Field(
+        description="Root of the sum over the bodies of the mean square of the displacements of their points: the "
+        "least that was found."
+    )
+    bodies: dict[str, AssembledBody]
+    others: list[Annotated[float, Unit("m")]] = Field(
+        description="Distances of other places that satisfy the connections, nearest among their neighbours, as far as "
+        "they were found: of other branches."
+    )
+    velocities_changed: bool = Field(description="Whether velocities were changed to the nearest that are possible.")
+    four_bar: FourBarLinkage | None = Field(description="If the scene is one.")
+    errors: Errors = Field(description="Bounds of the errors of the distance and of the others.")
+
+
 class DescribedSceneAnswer(AtStart[float]):
     """The requested answer about a scene."""
 
@@ -231,4 +275,5 @@ class DescribedSceneAnswer(AtStart[float]):
     extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were requested.")
     equilibria: list[SceneEquilibrium] | None = None
     thresholds: list[RestRange] | None = Field(default=None, description="If thresholds were requested, in order.")
+    assembly: Assembly | None = Field(default=None, description="If assemble was requested.")
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

@@ -9,7 +9,7 @@ from typing import Any
 
 from core.multibody.answer import RestRange
 from core.multibody.language.scene import check_size
-from core.multibody.model_answer import SceneModel, SmallMotion
+from core.multibody.model_answer import Assembly, SceneModel, SmallMotion
 from core.multibody.motion.generic_equation import weight_of
 from core.multibody.solve import OUTPUTS, solve_scene
 from core.multibody.trajectory.inherited import MOST_PROPAGATED_NUMBERS
@@ -106,6 +106,8 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
         answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
+    if found.assembly is not None:
+        answer["assembly"] = assembly_fields(found.assembly)
     if found.thresholds is not None:
         answer["thresholds"] = [_of_rest(one) for one in found.thresholds]
     return answer
@@ -124,6 +126,15 @@ def _of_rest(found: RestRange) -> dict[str, Any]:
 def model_fields(model: SceneModel) -> dict[str, Any]:
     """Return the fields of a model, its modes as objects."""
     return fields_of(model) | {"apart": [fields_of(part) | {"modes": _modes(part.modes)} for part in model.apart]}
+
+
+def assembly_fields(assembly: Assembly) -> dict[str, Any]:
+    """Return the fields of an assembly, those of its bodies and of its linkage as objects."""
+    linkage = assembly.four_bar
+    return fields_of(assembly) | {
+        "bodies": {name: fields_of(body) for name, body in assembly.bodies.items()},
+        "four_bar": None if linkage is None else fields_of(linkage),
+    }
 
 
 def _modes(modes: Sequence[SmallMotion]) -> list[dict[str, Any]]:

@@ -901,6 +901,7 @@ class SceneDescription(TypedDict):
     connections: NotRequired[Sequence[SceneConnection]]
     let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
     numbers: NotRequired[Literal["decimals", "doubles"]]
+    assemble: NotRequired[Literal["nearest"] | AssembledBodies | None]
 
 
 class AngleInDegrees(TypedDict):
@@ -1007,6 +1008,12 @@ class SceneConnection(TypedDict):
         "force",
         "torque",
     ]
+
+
+class AssembledBodies(TypedDict):
+    """Which bodies may be moved so that the connections are satisfied."""
+
+    nearest: Sequence[str]
 
 
 class UnwindingShafts(TypedDict):
@@ -1432,6 +1439,7 @@ class DescribedSceneRequest(TypedDict):
     connections: NotRequired[Sequence[SceneConnection]]
     let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
     numbers: NotRequired[Literal["decimals", "doubles"]]
+    assemble: NotRequired[Literal["nearest"] | AssembledBodies | None]
     times: NotRequired[Span | Numbers | None]
     accuracy: NotRequired[float]
     method: NotRequired[
@@ -1505,6 +1513,7 @@ class DescribedSceneAnswer(TypedDict):
     extremes: NotRequired[list[SceneExtremes] | None]
     equilibria: NotRequired[list[SceneEquilibrium] | None]
     thresholds: NotRequired[list[RestRange] | None]
+    assembly: NotRequired[Assembly | None]
     accuracy: NotRequired[DescribedAccuracy | None]
 
 
@@ -1704,6 +1713,39 @@ class RestEnd(TypedDict):
     error: float
     beyond: dict[str, str] | None
     problem: str | None
+
+
+class Assembly(TypedDict):
+    """The start that satisfies the connections, nearest to the places that were given."""
+
+    distance: float
+    bodies: dict[str, AssembledBody]
+    others: Floats
+    velocities_changed: bool
+    four_bar: FourBarLinkage | None
+    errors: dict[str, float | None]
+
+
+class AssembledBody(TypedDict):
+    """A body at the place that was found for it."""
+
+    at: Floats
+    angle: float | None
+    axes: Floats | None
+    moved: float
+    turned: float
+    errors: dict[str, float | None]
+
+
+class FourBarLinkage(TypedDict):
+    """A planar four-bar linkage."""
+
+    links: list[str]
+    lengths: Floats
+    kind: Literal["crank-rocker", "double-crank", "double-rocker", "triple-rocker", "change-point"]
+    margin: float
+    branch: Literal["open", "crossed"]
+    errors: dict[str, float | None]
 
 
 class DescribedAccuracy(TypedDict):
@@ -2242,6 +2284,7 @@ class CertifiedSceneRequest(TypedDict):
     connections: NotRequired[Sequence[SceneConnection]]
     let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
     numbers: NotRequired[Literal["decimals", "doubles"]]
+    assemble: NotRequired[Literal["nearest"] | AssembledBodies | None]
     times: NotRequired[DecimalSpan | Sequence[float | str] | None]
     outputs: NotRequired[Sequence[Literal["accelerations", "forces", "energy", "trajectory"]] | None]
     digits: int

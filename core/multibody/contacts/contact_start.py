@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from core.balls import as_text
-from core.errors import InvalidParameter
+from core.errors import PlacesDisagree
 from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import rate_along
 from core.multibody.contacts.projection import project
@@ -53,7 +53,7 @@ def assemble_contacts(base: Described) -> ContactStart:
             if not is_zero(gap):
                 moved.append(one.name)
         elif gap < 0:
-            raise InvalidParameter(
+            raise PlacesDisagree(
                 paths.get(one.name.split(".")[0], ()),
                 f'start with what cannot overlap apart: "{one.name}" is missed by {as_text(-gap, 3)}',
                 remedy="move the bodies apart",

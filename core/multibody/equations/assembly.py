@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from flint import arb, arb_mat
 
 from core.balls import as_text
-from core.errors import InvalidParameter, NotApplicable, Path
+from core.errors import InvalidParameter, NotApplicable, Path, PlacesDisagree
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.algebra.rank import Elimination, Line, independent
 from core.multibody.table.frames import Given
@@ -46,7 +46,7 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
             continue
         scale = size(row.measure or {}, extents)
         if not abs(residual) < CLOSE * scale:
-            raise InvalidParameter(
+            raise PlacesDisagree(
                 paths.get(row.name, ()),
                 f'agree with the positions: "{row.name}" misses them by {as_text(abs(residual), 3)}'
                 f" ({as_text(abs(residual) / scale, 2)} of its terms)",

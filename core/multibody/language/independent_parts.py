@@ -59,6 +59,7 @@ def _part(scene: Scene, bodies: Sequence[str], joined: Mapping[int, Sequence[str
         scene.gravity,
         scene.let,
         scene.numbers,
+        scene.assemble,
         tuple(number for number, _ in own),
     )
 

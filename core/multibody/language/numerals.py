@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
@@ -37,6 +37,9 @@ MOST_NAMES = 100
 
 LONGEST_NAME = 64
 """Letters of a name, as `NAME` has them."""
+
+OF_STATE = ("at", "angle", "axes", "velocity", "angular_velocity")
+"""Fields of a body that say where it is and how it moves at the start."""
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 """What bodies, places, connections and numbers may be called."""
@@ -104,6 +107,11 @@ class Numerals:
                 raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
             known[name] = found.number(number, ("let", name))
         return found
+
+    def without_places(self) -> Numerals:
+        """Return the numerals that take places, attitudes and velocities of bodies as they are written."""
+        own = {path: value for path, value in self.instead.items() if path[0] != "bodies" or path[2] not in OF_STATE}
+        return replace(self, instead=own)
 
     def number(self, value: object, path: Path) -> Ball:
         """Return a number as a ball.

@@ -46,6 +46,9 @@ class Scene:
         Named numbers that formulas may use.
     numbers : {"decimals", "doubles"}
         Whether 0.1 is the decimal or the double nearest to it.
+    assemble : "nearest" or mapping, optional
+        Takes places and velocities as a sketch, in place of which the nearest are found that satisfy the connections;
+        ``{"nearest": [names]}`` moves these bodies alone.
     """
 
     bodies: Mapping[str, SceneBody]
@@ -53,6 +56,7 @@ class Scene:
     gravity: Vector | None = None
     let: Mapping[str, Number] = field(default_factory=lambda: MappingProxyType({}))
     numbers: Literal["decimals", "doubles"] = "decimals"
+    assemble: Literal["nearest"] | Mapping[str, Sequence[str]] | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.bodies, Mapping) or not self.bodies:

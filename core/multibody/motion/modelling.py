@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from core.balls import precision
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, is_zero
+from core.multibody.assembly.assembled_scene import assembled
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.equations.dynamics import accelerations, parts, restricted, singular_row
 from core.multibody.equations.expansion import expansion
@@ -187,8 +188,9 @@ def system_of(scene: Scene) -> SceneSystem:
     NotApplicable
         If nothing moves.
     """
+    found = assembled(scene).scene
     with precision(BITS):
-        return scene_system(modelled(scene).whole)
+        return scene_system(modelled(found).whole)
 
 
 def _piece(found: Described, table: Table, indices: list[int]) -> Piece:

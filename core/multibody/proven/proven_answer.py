@@ -20,6 +20,7 @@ from core.digits.exact_inputs import enclosed
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO
 from core.multibody.answer import Energy
+from core.multibody.assembly.assembled_scene import assembled
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
@@ -92,6 +93,7 @@ def proven_answer(
         )
     if outputs is not None and "trajectory" in outputs and not times:
         raise InvalidParameter("times", "be given where trajectory is requested")
+    scene = assembled(scene).scene
     outputs = PROVEN_OUTPUTS if outputs is None else outputs
     check_instants(times)
     farthest = max((abs(float(t)) for t in times), default=0.0)

@@ -23,6 +23,7 @@ from core.balls import distance_bound
 from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, pointer_of
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.answer import RestEnd, RestRange
+from core.multibody.assembly.assembled_scene import assembled
 from core.multibody.contacts.complementarity import decided, stays
 from core.multibody.contacts.contact_start import assemble_contacts
 from core.multibody.contacts.contact_states import Problem, State
@@ -79,7 +80,7 @@ class _Varied:
         """Return the scene with another value of the number."""
         numerals = Numerals.of(self.scene.let, self.scene.numbers, instead={self.path: value})
         try:
-            base = described(self.scene, numerals, one_sided=True)
+            base = _base(self.scene, numerals)
             spend(_UNITS_OF_A_PROBE * len(base.measures.table.names))
             touching = assemble_contacts(base).touching
         except MechanicsError as fault:
@@ -98,6 +99,13 @@ class _Varied:
     def rests(self, value: Ball) -> bool:
         """Return whether the scene stays at rest with another value."""
         return _rests(self.at(value), self.touching)
+
+
+def _base(scene: Scene, numerals: Numerals) -> Described:
+    """Return the table of a scene; of a sketch, with the places that it has for these numbers."""
+    if scene.assemble is None:
+        return described(scene, numerals, one_sided=True)
+    return described(assembled(scene, numerals).scene, numerals.without_places(), one_sided=True)
 
 
 def _rests(base: Described, touching: Sequence[int]) -> bool:
@@ -129,7 +137,7 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
             remedy="ask for accelerations with other values of the number: at rest they are zero",
         )
     numerals = Numerals.of(scene.let, scene.numbers)
-    base = described(scene, numerals, one_sided=True)
+    base = _base(scene, numerals)
     if path not in numerals.every:
         near = did_you_mean(question.vary, [pointer_of(one) for one in numerals.every])
         raise InvalidParameter(

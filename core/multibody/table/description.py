@@ -30,10 +30,13 @@ class Described:
     paths: Mapping[str, Path]
 
 
-def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool = False) -> Described:
+def described(
+    scene: Scene, numerals: Numerals | None = None, *, one_sided: bool = False, sketch: bool = False
+) -> Described:
     """Return the table of a scene, its numbers read by `numerals` if given; the precision of balls is the caller's.
 
-    If it is `one_sided`, strings are no rows but unilateral measures, as contacts are.
+    If it is `one_sided`, strings are no rows but unilateral measures, as contacts are. The places of a `sketch` need
+    not satisfy the connections, and its bodies have the coordinates of their whole orientation.
 
     Raises
     ------
@@ -46,8 +49,11 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
     if one_sided and dimension_of(scene) == 2:
         # Angles are coordinates of their own, so that turns are counted across every event.
         seen = {name: what | {"turn"} if "direction" in what else what for name, what in seen.items()}
+    if sketch and dimension_of(scene) == 3:
+        # A top of which the axis alone is seen is to be described with all of its axes.
+        seen = {name: what | {"orientation"} if what - {"turn"} else what for name, what in seen.items()}
     coordinates = Coordinates(scene, numerals, seen)
-    measures = Measures(coordinates, one_sided=one_sided)
+    measures = Measures(coordinates, one_sided=one_sided, sketch=sketch)
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
     paths["clock"] = ()
     faults = FaultsOfParts()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from core.errors import InvalidParameter, Path
+from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.multibody.algebra.directions import perpendicular, unit
 from core.multibody.algebra.polynomials import (
     ONE,
@@ -44,10 +44,12 @@ class Measures:
     coordinates : Coordinates
     one_sided : bool
         Whether strings may go slack: they are then no rows, but stand in `unilateral`.
+    sketch : bool
+        Whether places need not satisfy the connections.
     """
 
-    def __init__(self, coordinates: Coordinates, *, one_sided: bool = False) -> None:
-        self.one_sided = one_sided
+    def __init__(self, coordinates: Coordinates, *, one_sided: bool = False, sketch: bool = False) -> None:
+        self.one_sided, self.sketch = one_sided, sketch
         self.unilateral: list[Unilateral] = []
         self.coordinates, self.table = coordinates, coordinates.table
         self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
@@ -102,8 +104,8 @@ class Measures:
             square = span * span
         if not square > 0:
             raise InvalidParameter((*path, "length"), "be greater than 0 m", remedy="hold the places by a pin")
-        if not abs(now - square) < CLOSE * (now + square):
-            raise InvalidParameter(
+        if not self.sketch and not abs(now - square) < CLOSE * (now + square):
+            raise PlacesDisagree(
                 (*path, "length"),
                 f"be {float(now.sqrt()):.10g} m, as the places are apart at the start",
                 remedy="leave it out, or move the bodies",

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
-from core.errors import InvalidParameter, Path, SlackAtStart
+from core.errors import InvalidParameter, Path, PlacesDisagree, SlackAtStart
 from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
@@ -177,7 +177,7 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
         held = evaluated(total, measures.table.q) if length is None else _length(measures, length, path)
         longer = combined((ONE, total), (-held, constant(ONE)))
         if measures.one_sided:
-            _require_long_enough(evaluated(total, measures.table.q), held, path)
+            _require_long_enough(measures, evaluated(total, measures.table.q), held, path)
             measures.unilateral.append(_at_most(measures, part, longer, connection, path))
             return
         _require_taut(evaluated(total, measures.table.q), held, path)
@@ -208,9 +208,9 @@ def _require_taut(way: Ball, length: Ball, path: Path) -> None:
         )
 
 
-def _require_long_enough(way: Ball, length: Ball, path: Path) -> None:
-    if way - length > CLOSE * length:
-        raise InvalidParameter(
+def _require_long_enough(measures: Measures, way: Ball, length: Ball, path: Path) -> None:
+    if not measures.sketch and way - length > CLOSE * length:
+        raise PlacesDisagree(
             (*path, "length"), f"be at least {float(way):.10g} m, the way it goes at the start", remedy="leave it out"
         )
 
@@ -224,7 +224,7 @@ def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: String,
         if not square > 0:
             raise InvalidParameter((*path, "through"), "pass places that are apart")
         way = measures.squared(d)
-        _require_long_enough(way.sqrt() if way > 0 else ZERO, square.sqrt(), path)
+        _require_long_enough(measures, way.sqrt() if way > 0 else ZERO, square.sqrt(), path)
         half = 1 / (2 * square.sqrt())
         longer = combined((half, dot(d, d)), (-half * square, constant(ONE)))
         measures.unilateral.append(_at_most(measures, part, longer, connection, path))
