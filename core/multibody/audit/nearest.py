@@ -39,21 +39,22 @@ def audited_assembly(sketch: Scene, found: Scene) -> Failure | None:
         return None
     names = tuple(sketch.bodies) if sketch.assemble == "nearest" else tuple(sketch.assemble["nearest"])  # type: ignore[index]
     placement = _as_one_sample(start)
-    numbers, virtual = Freedoms(description).virtual(names)
+    _, virtual = Freedoms(description).virtual(names)
+    count = len(virtual[names[0]].velocity)
     ahead, ledger, rows, none = moved(placement, virtual), Ledger(ROUNDING), [], np.zeros(1)
     for connection in description.connections:
         if not set(connection.bodies) & set(names):
             continue
         known = 8.0 * ROUNDING * (description.extent + connection.arm + connection.reach)
         for key, value in connection.held(ahead).items():
-            off = np.abs(value.real).reshape(len(numbers), -1)[:1]
+            off = np.abs(value.real).reshape(count, -1)[:1]
             ledger.compare(f"{key} held by the nearest places", connection.name, none, off.max(axis=1), known)
-            rows.append(value.imag.reshape(len(numbers), -1) / STEP)
+            rows.append(value.imag.reshape(count, -1) / STEP)
         for key, value in connection.gaps(ahead).items():
-            gap = value.real.reshape(len(numbers), -1)[0]
+            gap = value.real.reshape(count, -1)[0]
             ledger.compare(f"gap {key} of the nearest places", connection.name, none, np.minimum(gap, 0.0), known)
             if (np.abs(gap) <= known).all():
-                rows.append(value.imag.reshape(len(numbers), -1) / STEP)
+                rows.append(value.imag.reshape(count, -1) / STEP)
     slope = _slope(description, names, placement)
     if slope is not None and rows:
         lines = np.concatenate(rows, axis=1)
