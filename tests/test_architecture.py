@@ -224,6 +224,7 @@ TESTED_IN = {
     "core/rotation/uncertainty/sensitivities.py": "core/rotation/uncertainty/test_input_uncertainty.py",
     "core/rotation/closed_form/condition_bounds.py": "core/rotation/uncertainty/test_input_uncertainty.py",
     "core/rotation/closed_form/underflow.py": "extremes/test_rotation.py",
+    "core/rotation/stability/errors.py": "core/rotation/stability/test_stability.py",
     "core/rotation/regimes.py": "core/rotation/test_free_rotation.py",
     "core/scenes/chain_motion.py": "core/scenes/test_chain_on_wedge.py",
     "core/scenes/equation.py": "core/scenes/test_sampled_motion.py",

@@ -661,11 +661,11 @@ class StabilityAnswer(TypedDict):
     warnings: list[Notice]
     symmetry: Literal["spherical", "oblate", "prolate", "triaxial", "linear", "point"]
     rate: float
-    equilibria: list[Equilibrium]
-    flip: Flip | None
+    equilibria: list[EquilibriumInDoubles]
+    flip: FlipInDoubles | None
 
 
-class Equilibrium(TypedDict):
+class EquilibriumInDoubles(TypedDict):
     """A constant angular velocity, and what becomes of one near it."""
 
     axis: Floats | None
@@ -679,14 +679,25 @@ class Equilibrium(TypedDict):
     attitude: Literal["orbital", "unstable"]
     survives_dissipation: bool
     reason: str
+    errors: EquilibriumErrors
 
 
-class Flip(TypedDict):
+class EquilibriumErrors(TypedDict):
+    """Of rounding, and of derived moments."""
+
+    axis: float | None
+    moment: float | None
+    eigenvalue: float | None
+    drift_rate: float | None
+
+
+class FlipInDoubles(TypedDict):
     """What becomes of a disturbed rotation about the middle axis."""
 
     disturbance: Floats
     interval: float | None
     reason: str
+    error: float | None
 
 
 class EllipsoidRequest(TypedDict):

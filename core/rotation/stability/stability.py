@@ -26,6 +26,7 @@ from core.rotation.equal_moments import moments_of_kinds
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.figures import OUT_OF_RANGE, oriented
 from core.rotation.stability.classification import REST, Attitude, Kind, classify_equilibrium
+from core.rotation.stability.errors import AT_REST, EquilibriumErrors, equilibrium_errors, flip_error
 from core.rotation.stability.linearised import LinearRates, linear_rates
 from core.rotation.torque_free import inherited_notices
 
@@ -59,6 +60,7 @@ class Equilibrium(NamedTuple):
         Whether a body that loses energy inside, at constant angular momentum, can end here: the axis of largest
         moment, or one of several that share it.
     reason : str
+    errors : EquilibriumErrors
     """
 
     axis: Floats | None
@@ -72,6 +74,7 @@ class Equilibrium(NamedTuple):
     attitude: Attitude
     survives_dissipation: bool
     reason: str
+    errors: EquilibriumErrors = AT_REST
 
 
 @dataclass(frozen=True)
@@ -86,11 +89,14 @@ class Flip:
         Between sign changes of the component along the middle axis; None if there are none, or they are farther apart
         than doubles can say (s).
     reason : str
+    error : float or None
+        Of the interval (s).
     """
 
     disturbance: tuple[AngularRate, AngularRate]
     interval: float | None
     reason: str
+    error: float | None = None
 
 
 class Stability(NamedTuple):
@@ -146,7 +152,7 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
     moments, warnings = moments_of_kinds(inertia)
     rates = linear_rates(*moments, float(rate))
     pairs = list(zip(*(part.tolist() for part in moments), strict=True))
-    shown = [_about(pairs, k, rates[k], inertia) for k in range(3)]
+    shown = [_about(moments, pairs, k, rates[k], inertia) for k in range(3)]
     outside = [
         Notice(
             "out-of-range",
@@ -162,7 +168,13 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
     )
 
 
-def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, inertia: PrincipalInertia) -> Equilibrium:
+def _about(
+    of_kinds: tuple[Floats, Floats],
+    moments: list[tuple[float, float]],
+    axis: int,
+    rates: LinearRates,
+    inertia: PrincipalInertia,
+) -> Equilibrium:
     distinct = sorted(set(moments))
     verdict = classify_equilibrium([distinct.index(moment) for moment in moments], axis, rates.turning != 0.0)
     size = None if rates.size == OUT_OF_RANGE else rates.size
@@ -176,6 +188,7 @@ def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, in
     *pointing, _ = oriented(inertia.axes, axis)
     axis_of: Floats = np.array(pointing)
     axis_of.setflags(write=False)
+    drift = None if rates.drift == OUT_OF_RANGE else rates.drift
     return Equilibrium(
         axis_of,
         float(inertia.moments[axis]),
@@ -183,11 +196,12 @@ def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, in
         verdict.kind,
         verdict.stable,
         growth,
-        None if rates.drift == OUT_OF_RANGE else rates.drift,
+        drift,
         verdict.linearly_stable,
         verdict.attitude,
         verdict.survives_dissipation,
         verdict.reason,
+        equilibrium_errors(inertia, of_kinds, axis, pointing, size, drift),
     )
 
 
@@ -228,7 +242,8 @@ def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tu
         return Flip(given, None, f"{reason}; {rotation.model.why}")
     tilt = rotation.middle_axis_tilt
     tumbles = tilt is not None and tilt.tumbles
-    return Flip(given, interval, flip_reason(interval is not None, tumbles, rotation.model.why))
+    error = flip_error(inertia, (given[0], rate, given[1]), interval)
+    return Flip(given, interval, flip_reason(interval is not None, tumbles, rotation.model.why), error)
 
 
 def no_middle_axis() -> NotApplicable:

@@ -26,6 +26,7 @@ from service.schemas import (
     PerSecond,
     Radians,
     RadiansPerSecond,
+    Ratio,
     Request,
     Seconds,
     Span,
@@ -128,8 +129,36 @@ class Equilibria(Envelope, Generic[N]):
     flip: Flip[N] | None = Field(description="Of the disturbance; null without one.")
 
 
+class EquilibriumErrors(View):
+    """Bounds of the errors of an equilibrium's figures, also of derived moments; null where the figure is."""
+
+    axis: Ratio[float] | None = Field(description="Length of the difference.")
+    moment: Annotated[float, Unit("kg m^2")] | None = Field(description="Of the moment.")
+    eigenvalue: PerSecond[float] | None = Field(
+        description="Of the two eigenvalues that may differ from 0, and of the growth rate; the third is 0 exactly."
+    )
+    drift_rate: PerSecond[float] | None = Field(description="Of the drift rate.")
+
+
+class EquilibriumInDoubles(Equilibrium[float]):
+    """A constant angular velocity, and what becomes of one near it."""
+
+    errors: EquilibriumErrors = Field(description="Of rounding, and of derived moments.")
+
+
+class FlipInDoubles(Flip[float]):
+    """What becomes of a disturbed rotation about the middle axis."""
+
+    error: Seconds[float] | None = Field(description="Bound of the error of the interval; null without one.")
+
+
 class StabilityAnswer(Equilibria[float]):
     """Every equilibrium of a free body at one rate."""
+
+    equilibria: list[EquilibriumInDoubles] = Field(  # type: ignore[assignment]
+        description="About the axes in ascending order of moments, and at rest."
+    )
+    flip: FlipInDoubles | None = Field(description="Of the disturbance; null without one.")
 
 
 def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
@@ -146,7 +175,8 @@ def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
 def answer_stability(question: StabilityRequest, budget: Budget) -> Answer:
     """Answer with every equilibrium."""
     found = stability(properties_of(question.body), question.rate, question.disturbance)
-    return found._asdict() | {"equilibria": [equilibrium._asdict() for equilibrium in found.equilibria]}
+    listed = [one._asdict() | {"errors": one.errors._asdict()} for one in found.equilibria]
+    return found._asdict() | {"equilibria": listed}
 
 
 def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, float]:

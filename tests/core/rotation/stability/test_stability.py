@@ -221,3 +221,49 @@ def test_a_flip_is_said_of_a_body_that_turns_over_and_of_no_other(disturbance, t
     assert exact.reason.split(";")[0] == flip.reason.split(";")[0]
     oblique = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
     assert certified_stability(oblique, 2, 20, disturbance).flip.reason.startswith("it turns") == turns_over
+
+
+def bounded(body: MassProperties, exact: ExactInertia, rate: float, disturbance=None) -> int:
+    """Compare the errors that are stated with proven digits, and return how many there are."""
+    found = stability(body, rate, disturbance)
+    true = certified_stability(exact, rate, 60, disturbance)
+    count = 0
+    with mpmath.workdps(60):
+        for one, other in zip(found.equilibria, true.equilibria, strict=True):
+            errors = one.errors
+            pairs = [(one.growth_rate, other.growth_rate, errors.eigenvalue)]
+            pairs.append((one.drift_rate, other.drift_rate, errors.drift_rate))
+            for figures, digits in zip(one.eigenvalues[:2], other.eigenvalues[:2], strict=True):
+                pairs.extend(zip(figures, digits, [errors.eigenvalue] * 2, strict=True))
+            if one.moment is not None:
+                pairs.append((one.moment, other.moment, errors.moment))
+            if found.flip is not None and found.flip.interval is not None:
+                pairs.append((found.flip.interval, true.flip.interval, found.flip.error))
+            for figure, digits, error in pairs:
+                wrong = abs(mpmath.mpf(figure) - mpmath.mpf(digits))
+                assert wrong <= error + mpmath.mpf(10) ** -55 * abs(figure)
+                # No bound is much wider than rounding where moments are given.
+                assert not (figure and body.principal.rounding.exact_zeros) or error <= 2.0**-52 * abs(figure)
+                count += 1
+    return count
+
+
+@settings(deadline=None, max_examples=25, derandomize=True)
+@given(st.tuples(moment, moment, moment), st.floats(1e-3, 1e3), st.floats(1e-3, 1.0), st.floats(1e-3, 1.0))
+def test_errors_of_given_moments_bound_the_distance_from_proven_digits(moments, rate, small, large):
+    different = len(set(moments)) == 3
+    disturbance = (small, large) if different else None
+    assert bounded(diagonal(moments), ExactInertia.of_moments(moments), rate, disturbance) >= 8
+
+
+@settings(deadline=None, max_examples=15, derandomize=True)
+@given(st.lists(st.tuples(*[st.integers(-9, 9)] * 3), min_size=4, max_size=6, unique=True), st.floats(0.1, 10.0))
+def test_errors_of_derived_moments_bound_the_distance_from_proven_digits(points, rate):
+    tensor = [
+        [sum((sum(x * x for x in p) if i == j else 0) - p[i] * p[j] for p in points) for j in range(3)]
+        for i in range(3)
+    ]
+    if np.linalg.matrix_rank(np.array(points)) < 2:
+        return
+    body = PointMasses(1.0, [list(p) for p in points], "origin").mass_properties()
+    assert bounded(body, ExactInertia.of_tensor(tensor), rate) >= 8
