@@ -188,7 +188,7 @@ class Service(FastAPI):
             await asyncio.sleep(1.0)
 
     def _prepare(self) -> None:
-        self.answering.warm()
+        self.answering.warm(work=self.settings.inline_work)
         self.openapi_text()
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from importlib import import_module
+from math import inf, isfinite
 from typing import Any
 
 import orjson
@@ -11,8 +13,9 @@ import orjson
 from core.errors import Path, pointer_of
 from core.notices import Notice
 from core.systems.budget import Budget
+from core.work import WorkLimitReached, work_limit
 from service.requests.request_reader import Limits, Reader
-from service.routing import Answer, PostRoute
+from service.routing import Answer, PostRoute, never
 from service.schemas import SIGNATURE
 
 DESCRIBED_SCENES = "/v1/scenes"
@@ -46,8 +49,11 @@ class RequestHandler:
         plan = {"path": route.path, "count": 1, "together": False, "seconds": self.price(route, question), "bytes": 0}
         return plan | {name: [] for name in ("shape", "inputs", "figures")}
 
-    def warm(self, *, scenes_first: bool = False) -> None:
+    def warm(self, *, scenes_first: bool = False, work: float = inf) -> None:
         """Have every kernel that can be reached compiled or loaded, so that no client waits for that.
+
+        A process that begins questions up to a limit of `work` (`core.work`) needs the kernels of small questions
+        alone, and not the memory of the others.
 
         Of two processes that start at the same time on empty caches, one begins with the described scenes, the other
         ends with them: each compiles about half of the kernels and loads the other half.
@@ -55,10 +61,12 @@ class RequestHandler:
         asked = [
             (route, question)
             for route in self._routes
+            if not (isfinite(work) and route.small is never)
             for question in (*(example.question for example in route.examples.values()), *route.warming)
         ]
         for route, question in sorted(asked, key=lambda each: (each[0].path == DESCRIBED_SCENES) != scenes_first):
-            self.answer(route, self.read(route, orjson.dumps(question)))
+            with suppress(WorkLimitReached), work_limit(work):
+                self.answer(route, self.read(route, orjson.dumps(question)))
         # Its first use would otherwise import it, and hold up the event loop.
         import_module("scipy.integrate")
 

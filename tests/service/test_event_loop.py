@@ -115,7 +115,7 @@ def test_no_question_holds_the_event_loop(route: PostRoute) -> None:
     handler = RequestHandler([route], COMPUTE.terms.budget, COMPUTE.terms.limits)
     executor = Executor(handler, COMPUTE, Metrics(), SETTINGS)
     # What is imported or cached at the first question is no work of the others.
-    handler.warm()
+    handler.warm(work=SETTINGS.inline_work)
     known = [*QUESTIONS[route.path](), *((name, dict(one.question)) for name, one in route.examples.items())]
     fields = {name for name in ADDED if f'"{name}"' in json.dumps(TypeAdapter(route.question).json_schema())}
     answered = 0

@@ -14,12 +14,13 @@ import pytest
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.notices import Notice
 from core.systems.budget import Budget
+from core.work import spend
 from service import VERSION
 from service.execution.request_handler import RequestHandler
 from service.problems import Refusal
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
-from service.routing import Example, PostRoute
+from service.routing import Example, PostRoute, never
 from tests.service.conftest import ROOT
 from tests.service.toy_routes import GOOD, TOY, Ask
 
@@ -140,6 +141,19 @@ class TestWarm:
         assert seen[4].times == seen[3].times
         assert [question.times for question in seen[5:]] == [[0.0], [1.0], [2.0]]
 
+    def test_where_work_is_limited_questions_are_begun_of_which_some_are_small(self) -> None:
+        seen: list[str] = []
+
+        def noting(question: Any, budget: Budget) -> dict[str, Any]:
+            seen.append("begun")
+            spend(11.0)
+            seen.append("done")
+            return {}
+
+        begun = dataclasses.replace(TOY, handle=noting)
+        answering(begun, dataclasses.replace(begun, path="/v1/large", small=never)).warm(work=10.0)
+        assert seen == ["begun"]
+
     @pytest.mark.parametrize("example", [{}, GOOD | {"behaviour": "fail"}])
     def test_an_example_that_is_not_answered_stops_the_start(self, example: dict[str, Any]) -> None:
         with pytest.raises((Refusal, RuntimeError)):
@@ -156,7 +170,7 @@ from service.requests.request_reader import Limits
 from service.routing import TABLE
 from pkgutil import resolve_name
 answering = RequestHandler(resolve_name(TABLE)(), Budget(), Limits())
-answering.warm()
+answering.warm(work=2000)
 before = set(sys.modules)
 (route,) = (route for route in resolve_name(TABLE)() if route.path == "/v1/rotation/trajectory")
 for kind in ("lsoda", "radau"):
