@@ -20,7 +20,7 @@ from core.errors import AccuracyUnreachable, MechanicsError
 from core.multibody.algebra.directions import cross
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, is_zero
 from core.multibody.equations.packed import two_to
-from core.multibody.motion.motion import BallState, Motion, States, check_sample_count, in_pairs
+from core.multibody.motion.motion import BallState, Motion, States, in_pairs
 from core.multibody.motion.turning_body import TurningBody
 from core.multibody.table.table import Table
 from core.rotation.exact_start import ExactStart, PrincipalState
@@ -110,16 +110,6 @@ class FreeBody(Motion):
         )
         start = self.body.axes
         return [[sum((r[m][k] * start[m][i] for m in range(3)), ZERO) for i in range(3)] for k in range(3)]
-
-    def nodes(self, end: float) -> Floats:
-        """Return eight times to a radian at the fastest that the body could turn with its angular momentum."""
-        tensor = [[float(x) for x in row] for row in self.body.tensor]
-        omega = [float(x) for x in self.body.angular_velocity]
-        least = float(np.linalg.eigvalsh(np.array(tensor), UPLO="U")[0])
-        fastest = float(np.linalg.norm(np.array(tensor) @ omega)) / least if least > 0.0 else np.inf
-        count = fastest * abs(end) * _PER_RADIAN
-        check_sample_count(count, _MOST_NODES)
-        return np.linspace(0.0, end, 17 + int(count))
 
 
 def freely_turning(table: Table, body: TurningBody) -> FreeBody | None:

@@ -216,19 +216,6 @@ class Kepler(Motion):
                 return arb(s, abs(float(step)) * 2.0**-40) if abs(float(step)) > 0.0 else s
         raise AccuracyUnreachable(None, np.inf, "Kepler's equation is not solved in 320 bits", path=("times",))
 
-    def nodes(self, end: float) -> Floats:
-        """Return times that are alike in s, over one period or up to `end`."""
-        with precision(BITS):
-            distance, product, beta = self.constants
-            period = self.period
-            reach = end if period is None else math.copysign(min(abs(end), float(period)), end)
-            last = self._universal(arb(reach))
-            found = [0.0]
-            for k in range(1, _NODES):
-                _, g1, g2, g3 = stumpff(beta, last * k / _NODES)
-                found.append(float(distance * g1 + product * g2 + self.mu * g3))
-        return np.array([*found, reach])
-
 
 def keplerian(table: Table) -> Kepler | None:
     """Return the motion of a part that is one point and an inverse square of its distance from a centre; else None."""

@@ -23,7 +23,7 @@ from core.multibody.algebra.characteristic_roots import roots_but_zero
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degree, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import BallState, Mode, Motion, States, check_sample_count
+from core.multibody.motion.motion import BallState, Mode, Motion, States
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table
 from core.work import spend
@@ -294,13 +294,6 @@ class Modes(Motion):
         """Time up to which `in_doubles` answers (s), but for rounding."""
         fastest = self._fastest
         return 0.999 * FEW_RADIANS / fastest if fastest > 0.0 else math.inf
-
-    def nodes(self, end: float) -> Floats:
-        """Return times eight to the shortest period."""
-        fastest = self._fastest
-        count = abs(end) * fastest * 2.0
-        check_sample_count(count, MOST_NODES)
-        return np.linspace(0.0, end, 33 + int(count))
 
     def keeps_positive(self, length: Poly) -> bool:
         """Return whether the amplitudes of the modes show it."""

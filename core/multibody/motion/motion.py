@@ -119,13 +119,16 @@ class Motion(Protocol):
     def nodes(self, end: float) -> Floats:
         """Return times between 0 and `end`, or over one period, between which no direction turns by half a turn.
 
-        They serve to count the turns of an angle.
-
-        Raises
-        ------
-        BudgetExceeded
-            Where they would be too many.
+        They serve to count the turns of an angle, of a motion that turns a direction and does not know by how much.
         """
+        raise AssertionError(f"nothing turns a direction in {self.name}, or it is known how far")
+
+    def angles_turned(self, times: Sequence[Ball]) -> list[Ball] | None:
+        """Return by how much two coordinates on a circle have turned since the start (rad), None where it is not known.
+
+        The first turns towards the second, the one of the smaller number.
+        """
+        return None
 
     @property
     def period(self) -> Ball | None:
@@ -242,7 +245,3 @@ class Rest(Motion):
     def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
         """Return the start at every time."""
         return [BallState(self.table.q, self.table.v)] * len(times)
-
-    def nodes(self, end: float) -> Floats:
-        """Return the two ends."""
-        return np.array([0.0, end])

@@ -159,13 +159,13 @@ class Numerical(Motion):
         return found
 
     def nodes(self, end: float) -> Floats:
-        """Return eight times a step."""
+        """Return two times a step, in which nothing turns by more than some two radians."""
         run = self.run("fine" if self.lost_to_doubles else "doubles", end * two_to(-self.units.time))
         starts = run.starts[:, 0] * two_to(self.units.time)
         if not np.isfinite(starts).all():
             raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
         starts = starts[np.abs(starts) <= abs(end) * (1 + 1e-15)]
-        fine = np.interp(np.arange(8 * (len(starts) - 1) + 1) / 8.0, np.arange(len(starts)), starts)
+        fine = np.interp(np.arange(2 * (len(starts) - 1) + 1) / 2.0, np.arange(len(starts)), starts)
         return fine if run.singular else np.append(fine[np.abs(fine) < abs(end)], end)
 
     @property

@@ -6,7 +6,6 @@ of `core.scenes.pendulum` do not.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -19,7 +18,7 @@ from core.arrays import Floats
 from core.balls import Undetermined, precision
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, entry, is_zero
-from core.multibody.motion.motion import BallState, Motion, States, check_sample_count, in_pairs
+from core.multibody.motion.motion import BallState, Motion, States, in_pairs
 from core.multibody.table.table import Table
 from core.scenes.pendulum import Pendulum
 from core.scenes.pendulum_in_balls import pendulum_in_balls
@@ -85,6 +84,10 @@ class PlanePendulum(Motion):
             )
         return States(*in_pairs(states, 2), q_error.reshape(-1, 2), v_error.reshape(-1, 2))
 
+    def angles_turned(self, times: Sequence[Ball]) -> list[Ball]:
+        """Return how far it has turned."""
+        return [state.turned for state in self.in_balls(times)]
+
     def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
         """Return the states by elliptic functions; it raises as `Motion.in_balls`."""
         if ctx.prec not in self._known:
@@ -103,14 +106,6 @@ class PlanePendulum(Motion):
             across, along = cosine * a - sine * b, cosine * b + sine * a
             found.append(BallState([x + across, y + along], [-rate * along, rate * across], turned=turned - start))
         return found
-
-    def nodes(self, end: float) -> Floats:
-        """Return eight times to a radian at the largest rate, over one period or up to `end`."""
-        fastest = 2.0 * float(self.pendulum.frequency) * max(1.0, math.sqrt(float(self.pendulum.m)))
-        reach = abs(end) if self.period is None else min(abs(end), float(self.period))
-        count = fastest * reach * _PER_RADIAN
-        check_sample_count(count, _MOST_NODES)
-        return np.linspace(0.0, math.copysign(reach, end), 17 + int(count))
 
 
 def plane_pendulum(table: Table, chosen: list[int] | tuple[int, ...]) -> PlanePendulum | None:

@@ -11,7 +11,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, entry, is_zero
-from core.multibody.motion.motion import BallState, Motion, States, check_sample_count, in_pairs
+from core.multibody.motion.motion import BallState, Motion, States, in_pairs
 from core.multibody.table.table import Table
 
 _PER_RADIAN = 8
@@ -60,18 +60,24 @@ class Turning(Motion):
 
     def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
         """Return the states by sines and cosines."""
+        turned = self.angles_turned(times)
         c, s = self.direction
         first, second = self._away
         found = []
-        for time in times:
+        for time, way in zip(times, turned, strict=True):
             angle, q, v = self.rate * time, list(self.table.q), list(self.table.v)
             sine, cosine = angle.sin_cos()
             x, y = first * cosine - second * sine, second * cosine + first * sine
             q[c], q[s], v[c], v[s] = self.centre[0] + x, self.centre[1] + y, -self.rate * y, self.rate * x
             if self.turn is not None:
                 q[self.turn], v[self.turn] = self.table.q[self.turn] + angle, self.rate
-            found.append(BallState(q, v, turned=angle if c < s else -angle))
+            found.append(BallState(q, v, turned=way))
         return found
+
+    def angles_turned(self, times: Sequence[Ball]) -> list[Ball]:
+        """Return how far it has turned."""
+        rate = self.rate if self.direction[0] < self.direction[1] else -self.rate
+        return [rate * time for time in times]
 
     @property
     def _away(self) -> tuple[Ball, Ball]:
@@ -104,14 +110,6 @@ class Turning(Motion):
     def in_doubles_until(self) -> float:
         """Time up to which `in_doubles` answers (s), but for rounding."""
         return 0.999 * FEW_RADIANS / abs(float(self.rate)) if float(self.rate) else math.inf
-
-    def nodes(self, end: float) -> Floats:
-        """Return eight times to a radian, over one turn or up to `end`."""
-        period = self.period
-        reach = end if period is None else math.copysign(min(abs(end), float(period)), end)
-        count = abs(float(self.rate) * reach) * _PER_RADIAN
-        check_sample_count(count, _MOST_NODES)
-        return np.linspace(0.0, reach, 33 + int(count))
 
 
 def turning(part: Table, chosen: Sequence[int]) -> Turning | None:

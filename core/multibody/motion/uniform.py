@@ -56,10 +56,6 @@ class Uniform(Motion):
             for t in times
         ]
 
-    def nodes(self, end: float) -> Floats:
-        """Return enough times for what is at most quadratic in the state."""
-        return np.linspace(0.0, end, 33)
-
 
 @kernel()
 def _evaluate(start: Floats, rate: Floats, gain: Floats, times: Floats, q: Floats, v: Floats) -> None:

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from flint import arb
 
 from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly
+from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, entry
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
@@ -145,6 +146,18 @@ class Whole:
     def motions_of(self, coordinates: Sequence[int]) -> list[Motion]:
         """Return the motions of the parts that these coordinates of the scene follow."""
         return [self.parts[k][1] for k in self.parts_of(coordinates)]
+
+    def turned(self, direction: tuple[int, int], times: Floats) -> list[Ball] | None:
+        """Return by how much a direction has turned since the start (rad), None where the motion does not know it."""
+        motion = self.motion_of(direction)
+        turned = None if motion is None else motion.angles_turned([arb(float(t)) for t in times])
+        return None if turned is None else [self.sense(direction) * angle for angle in turned]
+
+    def sense(self, direction: tuple[int, int]) -> int:
+        """Return -1 where a direction turns against the place on a circle that it follows, else 1."""
+        first, second = (self.reduced.expressions[i] for i in direction)
+        x, y = sorted({key for key in (*first, *second) if key})
+        return 1 if entry(first, x) * entry(second, y) > entry(first, y) * entry(second, x) else -1
 
     def states(self, times: Floats, *, finer: bool = False) -> WholeStates:
         """Return the states at times of shape (t,)."""

@@ -169,12 +169,6 @@ class TurningSlip(Motion):
                     q[s, i], v[s, i] = pair(value(series, late), 0), pair(value(slope(series), late), 0)
         return q, v
 
-    def nodes(self, end: float) -> Floats:
-        """Return eight times a step."""
-        starts = np.array([float(x) for x in self.run("fine", end).starts])
-        fine = np.interp(np.arange(8 * (len(starts) - 1) + 1) / 8.0, np.arange(len(starts)), starts)
-        return np.append(fine[fine < end], min(end, float(starts[-1])))
-
 
 def _length(motion: Expansion, units: Sequence[str], fastest: dict[str, float], tolerance: float) -> Ball:
     """Return the length of a step: its last terms are a share of the largest rate of their unit at most."""

@@ -14,7 +14,7 @@ from core.balls import Undetermined, precision
 from core.digits.adaptive_precision import working_bits
 from core.digits.decimals import decimal, floor_below, place_of
 from core.errors import NotApplicable
-from core.multibody.algebra.polynomials import BITS, ZERO, Ball, entry, evaluated, is_zero
+from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import PartModel, SceneModel, SmallMotion
@@ -162,12 +162,7 @@ class PartProof:
             return total
         (piece, state), expressions = followed, self.found.whole.reduced.expressions
         if state.turned is not None:
-            # A direction and the place on a circle that it follows are one turned, or reflected too.
-            first_line, second_line = (expressions[i] for i in frame.direction)
-            first, second = sorted({key for key in (*first_line, *second_line) if key})
-            sense = entry(first_line, first) * entry(second_line, second)
-            sense = sense - entry(first_line, second) * entry(second_line, first)
-            return total + (state.turned if sense > 0 else -state.turned)
+            return total + self.found.whole.sense(frame.direction) * state.turned
         places = []
         for own in state.path:
             z = dict(zip(piece.indices, own, strict=True))

@@ -8,12 +8,9 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
-from flint import arb
 
 from core.arrays import Floats
 from core.multibody.motion.attitudes import quaternions
-from core.multibody.motion.numerical import Numerical
-from core.multibody.motion.turning import Turning
 from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.motion.whole import values as values_of
 from core.multibody.table.connection_effects import Force
@@ -230,20 +227,18 @@ class Columns:
 
     def _angle(self, direction: tuple[int, int], name: str) -> Column:
         """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
-        table = self.whole.measures.table
-        if isinstance(self.whole.motion_of(direction), Turning):
+        table, start_angle = self.whole.measures.table, self.whole.measures.coordinates.start_angle(name)
+        errors = self.states.q_error[:, direction[0]] + self.states.q_error[:, direction[1]]
+        turned = self.whole.turned(direction, self.times)
+        if turned is not None:
             # At any horizon, where the turns are too many to be counted on the way.
-            (x, y), (x_rate, y_rate) = ([of[i] for i in direction] for of in (table.q, table.v))
-            rate, at_start = x * y_rate - y * x_rate, self.whole.measures.coordinates.start_angle(name)
-            values = np.array([float(at_start + rate * arb(float(t))) for t in self.times])
-            return Column(values, "rad", _stated(values, np.zeros(len(values))), self.how)
+            values = np.array([float(start_angle + angle) for angle in turned])
+            return Column(values, "rad", _stated(values, errors), self.how)
         c, s = (self.states.q[:, i, 0] for i in direction)
         start = [float(table.q[i]) for i in direction]
-        first = float(self.whole.measures.coordinates.start_angle(name))
         principal = np.arctan2(start[0] * s - start[1] * c, start[0] * c + start[1] * s)
         turns = np.round((self._followed(direction) - principal) / (2 * math.pi))
-        values = first + (principal + 2 * math.pi * turns)
-        errors = self.states.q_error[:, direction[0]] + self.states.q_error[:, direction[1]]
+        values = float(start_angle) + (principal + 2 * math.pi * turns)
         return Column(values, "rad", _stated(values, errors), self.how)
 
     def _followed(self, direction: tuple[int, int]) -> Floats:
@@ -256,9 +251,6 @@ class Columns:
                 continue
             times = self.times[chosen]
             grid = motion.nodes(float(times[np.argmax(np.abs(times))]))
-            if isinstance(motion, Numerical):
-                # Of eight nodes a step two do, because nothing turns by more than some two radians in a step.
-                grid = np.append(grid[:-1:4], grid[-1])
             # A motion that repeats is followed for one period, and turns alike in each.
             period = None if motion.period is None else float(motion.period)
             if period is not None and abs(grid[-1]) >= period * (1 - 1e-9):
