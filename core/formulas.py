@@ -4,10 +4,10 @@
     product = factor (("*" | "/") factor)*
     factor  = ("+" | "-") factor | power
     power   = atom (("^" | "**") factor)?
-    atom    = number | "pi" | name | function "(" sum ")" | "(" sum ")"
+    atom    = number | "pi" | name | function "(" sum ("," sum)* ")" | "(" sum ")"
 
 Nothing is evaluated as code: names are those that the caller knows, functions those of a list, and length, nesting and
-exponents are limited.
+exponents are limited. A name may have parts behind points, such as bob.x.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from core.errors import InvalidParameter, Path
+from core.near_names import did_you_mean
 
 LONGEST_FORMULA = 300
 """Characters."""
@@ -27,13 +28,15 @@ LARGEST_EXPONENT = 400
 """Of ten, in a number."""
 
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "abs")
+OF_TWO = ("atan2",)
+"""Functions of two arguments, where a caller knows them."""
 _ALSO = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
 """Other names of functions."""
-NAMES_OF_FUNCTIONS = (*FUNCTIONS, *_ALSO)
+NAMES_OF_FUNCTIONS = (*FUNCTIONS, *OF_TWO, *_ALSO)
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?"
-_TOKEN = re.compile(rf"\s*(?:({_DIGITS})|([A-Za-z]\w*)|(\*\*|[-+*/^()]))", re.ASCII)
+_TOKEN = re.compile(rf"\s*(?:({_DIGITS})|([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)|(\*\*|[-+*/^(),]))", re.ASCII)
 
 T = TypeVar("T")
 
@@ -73,7 +76,7 @@ class Node:
     Attributes
     ----------
     kind : str
-        ``"number"``, ``"pi"``, ``"name"``, ``"negative"``, one of ``+ - * / ^``, or one of `FUNCTIONS`.
+        ``"number"``, ``"pi"``, ``"name"``, ``"negative"``, one of ``+ - * / ^``, or one of `FUNCTIONS` or `OF_TWO`.
     text : str
         The digits of a number, or a name.
     inner : tuple of Node
@@ -98,14 +101,14 @@ class Arithmetic(Generic[T]):
     divide, power : callable
         Of two values.
     functions : mapping of str to callable
-        One for each of `FUNCTIONS`.
+        One for each of `FUNCTIONS`, and for those of `OF_TWO` that formulas may have.
     """
 
     number: Callable[[str], T]
     pi: Callable[[], T]
     divide: Callable[[T, T], T]
     power: Callable[[T, T], T]
-    functions: Mapping[str, Callable[[T], T]]
+    functions: Mapping[str, Callable[..., T]]
 
 
 @dataclass(frozen=True)
@@ -123,8 +126,16 @@ class Formula:
     names: frozenset[str]
 
     @classmethod
-    def read(cls, text: str, known: Collection[str]) -> Formula:
+    def read(cls, text: str, known: Collection[str], functions: Collection[str] = FUNCTIONS) -> Formula:
         """Return the formula that a text states.
+
+        Parameters
+        ----------
+        text : str
+        known : collection of str
+            Names that it may use; one with a sign in it, such as rod-2.x, is read as a whole.
+        functions : collection of str
+            Functions that it may use.
 
         Raises
         ------
@@ -135,7 +146,7 @@ class Formula:
         """
         if len(text) > LONGEST_FORMULA:
             raise InvalidParameter((), f"have at most {LONGEST_FORMULA} characters, not {len(text)}")
-        reader = _Reader(_tokens(text), known)
+        reader = _Reader(_tokens(text, known), known, functions)
         root = reader.sum()
         if reader.at != len(reader.tokens):
             raise InvalidParameter((), "be one complete formula")
@@ -169,16 +180,33 @@ def value_of(node: Node, names: Mapping[str, T], arithmetic: Arithmetic[T]) -> T
         case "^":
             found = arithmetic.power(values[0], values[1])
         case _:
-            found = arithmetic.functions[node.kind](values[0])
+            found = arithmetic.functions[node.kind](*values)
     return found  # type: ignore[no-any-return]
 
 
-def _tokens(text: str) -> list[tuple[str, str, str]]:
+def names_in(text: str) -> frozenset[str]:
+    """Return what stands as a name or function in a text; nothing of what is no formula."""
+    try:
+        return frozenset(name for _, name, _ in _tokens(text, ()) if name)
+    except InvalidParameter:
+        return frozenset()
+
+
+def _tokens(text: str, known: Collection[str]) -> list[tuple[str, str, str]]:
+    with_signs = sorted((name for name in known if "-" in name), key=len, reverse=True)
+    signed = re.compile(rf"\s*({'|'.join(map(re.escape, with_signs))})(?![\w.])") if with_signs else None
     found, end, text = [], 0, text.rstrip()
     while end < len(text):
+        name_with_sign = None if signed is None else signed.match(text, end)
+        if name_with_sign is not None:
+            found.append(("", name_with_sign.group(1), ""))
+            end = name_with_sign.end()
+            continue
         token = _TOKEN.match(text, end)
         if token is None:
-            raise InvalidParameter((), "be a formula of numbers, names, + - * / ^ ( ) and functions")
+            at = end + len(text[end:]) - len(text[end:].lstrip())
+            rule = "be a formula of numbers, names, + - * / ^ ( ) and functions"
+            raise InvalidParameter((), f'{rule}, unlike "{text[at]}" (character {at + 1})')
         number, exponent, name, sign = token.groups(default="")
         if exponent and abs(int(exponent)) > LARGEST_EXPONENT:
             raise InvalidParameter((), f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
@@ -190,8 +218,9 @@ def _tokens(text: str) -> list[tuple[str, str, str]]:
 class _Reader:
     """Reads tokens by recursive descent."""
 
-    def __init__(self, tokens: list[tuple[str, str, str]], known: Collection[str]) -> None:
+    def __init__(self, tokens: list[tuple[str, str, str]], known: Collection[str], functions: Collection[str]) -> None:
         self.tokens, self.known, self.at, self.depth = tokens, known, 0, 0
+        self.functions = functions
         self.names: set[str] = set()
 
     def sum(self) -> Node:
@@ -233,18 +262,32 @@ class _Reader:
             return Node("name", name)
         if name == "pi":
             return Node("pi")
-        if name in NAMES_OF_FUNCTIONS:
-            return Node(_ALSO.get(name, name), inner=(self._parenthesis(),))
-        shown, remedy = name[:64], _names_here(self.known)
+        function = _ALSO.get(name, name)
+        if function in self.functions:
+            return Node(function, inner=self._arguments(2 if function in OF_TWO else 1))
+        shown, remedy = name[:64], self._remedy(name)
         raise UnknownName((), f'use known names, unlike "{shown}"', remedy=remedy, name=shown)
 
+    def _remedy(self, name: str) -> str:
+        """Return the name that was probably meant, and those that there are."""
+        near = did_you_mean(name, [*self.known, *self.functions])
+        here = _names_here(self.known, self.functions)
+        return here if near is None else f"{near} {here}"
+
     def _parenthesis(self) -> Node:
+        return self._arguments(1)[0]
+
+    def _arguments(self, count: int) -> tuple[Node, ...]:
         if not self._take("("):
             raise InvalidParameter((), "be one complete formula")
-        node = self.sum()
+        found = [self.sum()]
+        while self._take(","):
+            found.append(self.sum())
         if not self._take(")"):
             raise InvalidParameter((), "close every parenthesis")
-        return node
+        if len(found) != count:
+            raise InvalidParameter((), f"have {count} values in a parenthesis where it has {len(found)}")
+        return tuple(found)
 
     def _take(self, *signs: str) -> str:
         sign = self.tokens[self.at][2] if self.at < len(self.tokens) else ""
@@ -259,7 +302,7 @@ class _Reader:
             raise InvalidParameter((), f"be nested at most {DEEPEST} deep")
 
 
-def _names_here(known: Iterable[str]) -> str:
+def _names_here(known: Iterable[str], of: Iterable[str]) -> str:
     names = ", ".join(sorted(known))
-    functions = "functions: " + ", ".join(FUNCTIONS)
+    functions = "functions: " + ", ".join(of)
     return f"names: {names}; {functions}" if names and len(names) < 200 else functions

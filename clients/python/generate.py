@@ -10,6 +10,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
+from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
@@ -91,12 +92,22 @@ class Types:
         return self._names[key]
 
     def _body(self, name: str, schema: Schema, sent: bool) -> str:
-        lines = [f"class {name}(TypedDict):", f'    """{schema.get("description", name)}"""', ""]
         required = schema.get("required", ())
+        words, lines = [], []
         for field, inner in schema["properties"].items():
             annotation = self.annotation(inner, sent=sent)
-            lines.append(f"    {field}: {annotation if field in required else f'NotRequired[{annotation}]'}")
-        return "\n".join(lines)
+            annotation = annotation if field in required else f"NotRequired[{annotation}]"
+            if iskeyword(field):
+                words.append(f"{field!r}: {annotation}")
+            else:
+                lines.append(f"    {field}: {annotation}")
+        head = [
+            f"class {name}({f'_{name}' if words else 'TypedDict'}):",
+            f'    """{schema.get("description", name)}"""',
+        ]
+        # A field that is called like a word of Python's cannot stand in the body of a class.
+        before = [f'_{name} = TypedDict("_{name}", {{{", ".join(words)}}})', "", ""] if words else []
+        return "\n".join([*before, *head, "", *lines])
 
 
 def _joined(annotations: Iterator[str]) -> str:

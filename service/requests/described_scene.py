@@ -75,8 +75,10 @@ def _form(hint: Any) -> Any:
     if words:
         shown = [*(part for part in shown if get_origin(part) is not Literal), Literal.__getitem__(tuple(words))]
     if Mapping[str, Any] in parts:
-        # What may be a number or a vector is turned about an axis: polar vectors are places.
-        shown.append(AngleInDegrees if float in parts else PolarVector)
+        # What may be a number or a vector is turned about an axis: polar vectors are places, and what may be a list of
+        # names an object of its own.
+        other = Mapping[str, Any] if Sequence[str] in parts else PolarVector
+        shown.append(AngleInDegrees if float in parts else other)
     return Union.__getitem__(tuple(_form(part) for part in shown))
 
 
@@ -102,9 +104,11 @@ def _connection_form() -> type[Request]:
     hints: dict[str, Any] = {}
     for kind, cls in KINDS.items():
         written = get_type_hints(cls)
-        for name in (entry.name for entry in fields(cls)):
+        for entry in fields(cls):
+            # A word of Python's has a sign behind it as the name of a field.
+            name, hint = entry.name.rstrip("_"), written[entry.name]
             kinds.setdefault(name, []).append(kind)
-            hints[name] = hints[name] | written[name] if name in hints else written[name]
+            hints[name] = hints[name] | hint if name in hints else hint
     own: dict[str, Any] = {
         name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
         for name, hint in hints.items()
@@ -178,7 +182,11 @@ class SceneDescription(Request):
         description=f"By name, at most {MOST_BODIES}. Names are letters, digits, - and _."
     )
     connections: list[ConnectionReadByCore] = Field(default=[], description=f"At most {MOST_CONNECTIONS}.")
-    let: NamedNumbers = Field(default={}, description="Named constants for formulas; each may use those before it.")
+    let: NamedNumbers = Field(
+        default={},
+        description="Named constants for formulas; each may use those before it. Also formulas of the motion, which "
+        "mean what they say where a force uses them.",
+    )
     numbers: Literal["decimals", "doubles"] = Field(
         default="decimals", description="Whether 0.1 is the decimal or the double nearest to it."
     )

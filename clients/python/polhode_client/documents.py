@@ -963,7 +963,10 @@ class SceneBody(TypedDict):
     places: NotRequired[Mapping[str, Sequence[float | str | AngleInDegrees] | PolarVector]]
 
 
-class SceneConnection(TypedDict):
+_SceneConnection = TypedDict("_SceneConnection", {"in": NotRequired[Literal["body"]]})
+
+
+class SceneConnection(_SceneConnection):
     """What ties bodies to one another and to the ground; `name` is by default its kind and number."""
 
     a: NotRequired[str | Sequence[float | str | AngleInDegrees] | PolarVector]
@@ -974,7 +977,7 @@ class SceneConnection(TypedDict):
     direction: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
     length: NotRequired[float | str | AngleInDegrees]
     place: NotRequired[str | Sequence[float | str | AngleInDegrees] | PolarVector]
-    on: NotRequired[Mapping[str, Any]]
+    on: NotRequired[Sequence[str] | Mapping[str, Any]]
     inside: NotRequired[bool]
     measure: NotRequired[Literal["gap", "turn", "length"]]
     at_least: NotRequired[float | str | AngleInDegrees]
@@ -988,6 +991,7 @@ class SceneConnection(TypedDict):
     density: NotRequired[float | str | AngleInDegrees]
     stiffness: NotRequired[float | str | AngleInDegrees]
     rest_length: NotRequired[float | str | AngleInDegrees]
+    law: NotRequired[str]
     rest_angle: NotRequired[float | str | AngleInDegrees]
     constant: NotRequired[float | str | AngleInDegrees]
     strength: NotRequired[float | str | AngleInDegrees]
@@ -998,6 +1002,7 @@ class SceneConnection(TypedDict):
     force: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
     body: NotRequired[str]
     torque: NotRequired[float | str | Sequence[float | str | AngleInDegrees] | AngleInDegrees]
+    acceleration: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
     kind: Literal[
         "pin",
         "ball-joint",
@@ -1018,6 +1023,7 @@ class SceneConnection(TypedDict):
         "spinning-frame",
         "force",
         "torque",
+        "field",
     ]
 
 

@@ -282,7 +282,7 @@ def _spun(description: Description, samples: Samples) -> bool:
 
 def _rows(placement: Placement, rows: slice) -> Placement:
     return {
-        name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn)))  # type: ignore[arg-type]
+        name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn, pose.time)))  # type: ignore[arg-type]
         for name, pose in placement.items()
     }
 
@@ -292,7 +292,7 @@ def _described(description: Description) -> tuple[Placement, Motion]:
     placement, motion = {}, {}
     for name, body in description.bodies.items():
         at = body.start
-        placement[name] = Pose(*(None if x is None else x[None] for x in (at.position, at.rotation, at.turn)))  # type: ignore[arg-type]
+        placement[name] = Pose(*(None if x is None else x[None] for x in (at.position, at.rotation, at.turn, at.time)))  # type: ignore[arg-type]
         still = np.zeros((1, description.dimension))
         spin = np.zeros((1, 3) if description.dimension == 3 else 1)
         motion[name] = Twist(still, None if body.inertia is None else spin)

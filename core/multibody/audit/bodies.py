@@ -17,6 +17,9 @@ from core.multibody.language.written import GROUND
 
 Path = tuple[str | int, ...]
 
+BEGIN = np.zeros(())
+"""Time of the start (s)."""
+
 
 @dataclass(frozen=True)
 class RigidBody:
@@ -118,14 +121,14 @@ class Reader:
         body, path = self.scene.bodies[name], ("bodies", name)
         mass, inertia = self._inertia(name)
         position = np.array(self.vector(body.at, (*path, "at")))
-        tensor, start = None, Pose(position)
+        tensor, start = None, Pose(position, time=BEGIN)
         if inertia is not None and self.dimension == 2:
             tensor = np.array(inertia)
             turn = np.array(0.0 if body.angle is None else self.number(body.angle, (*path, "angle")))
-            start = Pose(position, turned(turn), turn)
+            start = Pose(position, turned(turn), turn, BEGIN)
         elif inertia is not None:
             tensor = np.array(inertia)
-            start = Pose(position, self._attitude(body.axes, (*path, "axes")))
+            start = Pose(position, self._attitude(body.axes, (*path, "axes")), time=BEGIN)
         omega: Any = body.angular_velocity
         if omega is not None:
             where = (*path, "angular_velocity")

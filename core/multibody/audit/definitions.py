@@ -12,14 +12,20 @@ from functools import cached_property
 
 import numpy as np
 
-from core.multibody.audit import contact_definitions, joint_definitions, law_definitions, string_definitions
+from core.multibody.audit import (
+    contact_definitions,
+    formula_definitions,
+    joint_definitions,
+    law_definitions,
+    string_definitions,
+)
 from core.multibody.audit.bodies import Reader, RigidBody
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.placement import LARGEST, LEAST, Placement, Undefined
 from core.multibody.language.scene import Scene
 
-FORMS = (contact_definitions, joint_definitions, law_definitions, string_definitions)
+FORMS = (contact_definitions, formula_definitions, joint_definitions, law_definitions, string_definitions)
 """The modules with the forms of `definition_of` for the kinds of the catalogue: their import registers them."""
 
 

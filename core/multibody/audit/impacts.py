@@ -209,7 +209,7 @@ def _extrapolated(rows: Samples) -> _Side:
         position, velocity = of(pose.position), of(twist.velocity)
         assert position is not None, "every body has a position"
         assert velocity is not None, "every body has a velocity"
-        placement[name] = Pose(position, of(pose.rotation), of(pose.turn))
+        placement[name] = Pose(position, of(pose.rotation), of(pose.turn), of(pose.time))
         motion[name] = Twist(velocity, of(twist.spin))
         spin = 0.0 if twist.spin is None else bend(twist.spin) + WEIGHTS * float(error[SPIN])
         unsure[name] = bend(twist.velocity) + WEIGHTS * float(error[VELOCITY]), spin

@@ -7,6 +7,12 @@ from math import hypot
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
+from core.multibody.audit.formula_definitions import (
+    damper_by_law,
+    force_by_formulas,
+    spring_by_law,
+    torque_by_formula,
+)
 from core.multibody.audit.joint_definitions import distance_at_start, ends_of
 from core.multibody.audit.laws import (
     Attraction,
@@ -38,6 +44,8 @@ from core.multibody.language.written import GROUND
 def spring(connection: Spring, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a spring; where it has no rest length, its pull has components."""
     a, b = ends_of(connection, reader, path)
+    if connection.law is not None:
+        return spring_by_law(connection, reader, name, a, b, path)
     bodies = (*a.bodies, *b.bodies)
     stiffness = reader.number(connection.stiffness, (*path, "stiffness"))
     if connection.rest_length is None:
@@ -63,6 +71,11 @@ def torsion_spring(connection: TorsionSpring, reader: Reader, name: str, path: P
 @definition_of.register
 def damper(connection: Damper, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a damper of a length or of a turn."""
+    if connection.measure == "turn" and connection.law is not None:
+        return damper_by_law(connection, reader, name, _turning(connection), path)
+    if connection.law is not None:
+        a, b = ends_of(connection, reader, path)
+        return spring_by_law(Spring(connection.a, connection.b, law=connection.law), reader, name, a, b, path)
     coefficient = reader.number(connection.coefficient, (*path, "coefficient"))
     if connection.measure == "turn":
         return TurnDamper(name, *_turning(connection), coefficient)
@@ -95,14 +108,20 @@ def inverse_square(connection: InverseSquare, reader: Reader, name: str, path: P
 
 @definition_of.register
 def force(connection: AppliedForce, reader: Reader, name: str, path: Path) -> Definition:
-    """Return the definition of a constant force."""
+    """Return the definition of a force."""
+    formulas = force_by_formulas(connection, reader, name, path)
+    if formulas is not None:
+        return formulas
     place = reader.place(connection.place, (*path, "place"))
     return ConstantForce(name, place.bodies, place, reader.vector(connection.force, (*path, "force")))
 
 
 @definition_of.register
 def torque(connection: Torque, reader: Reader, name: str, path: Path) -> Definition:
-    """Return the definition of a constant torque."""
+    """Return the definition of a torque."""
+    formula = torque_by_formula(connection, reader, name, path)
+    if formula is not None:
+        return formula
     where, given = (*path, "torque"), connection.torque
     torque = reader.number(given, where) if reader.dimension == 2 else reader.vector(given, where)
     return ConstantTorque(name, (connection.body,), connection.body, torque)

@@ -40,11 +40,14 @@ class Pose(NamedTuple):
         Its columns are the body axes. None of a particle, and of a body whose attitude is not known.
     turn : ndarray, shape (), or None
         In the plane, the unwrapped angle (rad).
+    time : ndarray, shape (), or None
+        When it is there, from the start (s); None where that is not known.
     """
 
     position: Numbers
     rotation: Numbers | None = None
     turn: Numbers | None = None
+    time: Numbers | None = None
 
 
 class Twist(NamedTuple):
@@ -200,15 +203,17 @@ def _moved(pose: Pose, twist: Twist) -> Pose:
     step = 1j * STEP
     position = pose.position + step * twist.velocity
     if twist.spin is None:
-        return Pose(position, pose.rotation, pose.turn)
+        return Pose(position, pose.rotation, pose.turn, pose.time)
     turn = None if pose.turn is None else pose.turn + step * twist.spin
     if pose.rotation is None:
-        return Pose(position, None, turn)
+        return Pose(position, None, turn, pose.time)
     if pose.position.shape[-1] == 2:
-        return Pose(position, pose.rotation + step * twist.spin[..., None, None] * (QUARTER @ pose.rotation), turn)
+        return Pose(
+            position, pose.rotation + step * twist.spin[..., None, None] * (QUARTER @ pose.rotation), turn, pose.time
+        )
     axes = np.swapaxes(pose.rotation, -1, -2)
     rates = np.swapaxes(cross(twist.spin[..., None, :], axes), -1, -2)
-    return Pose(position, pose.rotation + step * rates, turn)
+    return Pose(position, pose.rotation + step * rates, turn, pose.time)
 
 
 def rate(measure: Measure, placement: Placement, motion: Motion) -> Numbers:

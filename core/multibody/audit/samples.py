@@ -57,7 +57,7 @@ class Samples:
     def at(self, rows: Numbers | slice) -> Samples:
         """Return some of the samples, by a mask, their numbers or a slice."""
         placement = {
-            name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn)))  # type: ignore[arg-type]
+            name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn, pose.time)))  # type: ignore[arg-type]
             for name, pose in self.placement.items()
         }
         motion = {
@@ -87,7 +87,7 @@ class Samples:
             return None if x is None else x.reshape(-1, *x.shape[2:])
 
         placement = {
-            name: Pose(flat(pose.position), flat(pose.rotation), flat(pose.turn))  # type: ignore[arg-type]
+            name: Pose(flat(pose.position), flat(pose.rotation), flat(pose.turn), flat(pose.time))  # type: ignore[arg-type]
             for name, pose in self.placement.items()
         }
         motion = {
@@ -138,9 +138,9 @@ class Samples:
 
     def _changed(self, name: str, changes: Sequence[tuple[str, str, int]], count: int) -> tuple[Pose, Twist]:
         pose, twist, error = self.placement[name], self.motion[name], self.errors[name]
-        position, velocity, rotation, turn, spin = (
+        position, velocity, rotation, turn, time, spin = (
             None if x is None else np.repeat(x[None], count, axis=0)
-            for x in (pose.position, twist.velocity, pose.rotation, pose.turn, twist.spin)
+            for x in (pose.position, twist.velocity, pose.rotation, pose.turn, pose.time, twist.spin)
         )
         assert position is not None, "every body has a position"
         assert velocity is not None, "every body has a velocity"
@@ -158,7 +158,7 @@ class Samples:
                 if turn is not None:
                     turn[p] += error[:, ATTITUDE]
                 rotation[p] += error[:, ATTITUDE, None, None] * _tilted(rotation[p], i)
-        return Pose(position, rotation, turn), Twist(velocity, spin)
+        return Pose(position, rotation, turn, time), Twist(velocity, spin)
 
 
 def _tilted(rotation: Numbers, i: int) -> Numbers:
@@ -185,8 +185,9 @@ def joined(parts: Sequence[tuple[Placement, Motion]]) -> tuple[Placement, Motion
         )
         rotation = None if poses[0].rotation is None else every([pose.rotation for pose in poses])
         turn = None if poses[0].turn is None else every([pose.turn for pose in poses])
+        time = None if poses[0].time is None else every([pose.time for pose in poses])
         spin = None if twists[0].spin is None else every([twist.spin for twist in twists])
-        placement[name], motion[name] = Pose(position, rotation, turn), Twist(velocity, spin)
+        placement[name], motion[name] = Pose(position, rotation, turn, time), Twist(velocity, spin)
     return placement, motion
 
 
@@ -214,7 +215,8 @@ def samples_of(description: Description, parts: Sequence[Part]) -> Samples:
     joined = _Joined(parts)
     placement, motion, errors = {}, {}, {}
     for name, body in description.bodies.items():
-        placement[name], motion[name], stated = _body(body, description, joined)
+        pose, motion[name], stated = _body(body, description, joined)
+        placement[name] = pose._replace(time=joined.times)
         errors[name] = np.repeat(np.array(stated).T, joined.counts, axis=0)
     forces: dict[str, Numbers] = {}
     force_errors: dict[str, Numbers] = {}

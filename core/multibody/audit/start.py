@@ -139,13 +139,13 @@ def _after(pose: Pose, twist: Twist, gain: Acceleration, step: Numbers) -> tuple
     position = pose.position + t * (twist.velocity + t / 2.0 * gain.linear)
     velocity = twist.velocity + t * gain.linear
     if twist.spin is None or gain.angular is None:
-        return Pose(position), Twist(velocity)
+        return Pose(position, time=step), Twist(velocity)
     if pose.turn is not None:
         turn = pose.turn + step * (twist.spin + step / 2.0 * gain.angular)
-        return Pose(position, turned(turn), turn), Twist(velocity, twist.spin + step * gain.angular)
+        return Pose(position, turned(turn), turn, step), Twist(velocity, twist.spin + step * gain.angular)
     turned_by, spin = t * (twist.spin + t / 2.0 * gain.angular), twist.spin + t * gain.angular
     assert pose.rotation is not None, "a body in space that spins has an attitude"
     axes = np.swapaxes(pose.rotation, -1, -2)
     once = cross(turned_by[..., None, :], axes)
     axes = axes + once + cross(turned_by[..., None, :], once) / 2.0
-    return Pose(position, np.swapaxes(axes, -1, -2)), Twist(velocity, spin)
+    return Pose(position, np.swapaxes(axes, -1, -2), time=step), Twist(velocity, spin)

@@ -11,6 +11,7 @@ from flint import arb_mat
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, entry, evaluated, is_zero
 from core.multibody.algebra.rank import Elimination, independent
+from core.multibody.laws.series import values_at
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.measures import Measures
 from core.multibody.table.table import Row, Table
@@ -39,6 +40,8 @@ def parts(table: Table) -> list[list[int]]:
             join(key)
     for row in table.rows:
         join(sorted(row.coordinates()))
+    for law in table.laws:
+        join(sorted(law.coordinates()))
     groups: dict[int, list[int]] = {}
     for i in range(len(parent)):
         if timeless[i]:
@@ -60,7 +63,8 @@ def _sees(table: Table, group: list[int], clocks: list[int]) -> bool:
         for key in keys:
             if timed & set(key) and inside & set(key):
                 return True
-    return any(timed & (seen := row.coordinates()) and inside & seen for row in table.rows)
+    every = [row.coordinates() for row in table.rows] + [law.coordinates() for law in table.laws]
+    return any(timed & seen and inside & seen for seen in every)
 
 
 def restricted(table: Table, indices: Sequence[int]) -> Table:
@@ -87,6 +91,7 @@ def restricted(table: Table, indices: Sequence[int]) -> Table:
             number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.drag.items()
         }
         new.rows.append(Row(row.name, renamed, rates, row.rate, drag))
+    new.laws = [law.renumbered(number) for law in table.laws if law.coordinates() <= set(number)]
     return new
 
 
@@ -286,6 +291,9 @@ def _force(measures: Measures, force: Force, elimination: Elimination) -> ForceA
         total = total + value * table.v[j]
     for j, value in force.of_squares.items():
         total = total + value * table.v[j] * table.v[j]
+    if force.of_laws:
+        forces = values_at(table.laws, table.q, table.v)
+        total = sum((value * forces[number] for number, value in force.of_laws.items()), total)
     line = {row: evaluated(poly, table.q) for row, poly in force.terms}
     free, value = elimination.reduced({row: x for row, x in line.items() if not is_zero(x)}, -total)
     if not free:

@@ -12,6 +12,7 @@ from flint import arb_mat
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, entry, is_zero
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import weightless
+from core.multibody.laws.series import LawSeries
 from core.multibody.table.table import Row, Table
 
 Series = list[Ball]
@@ -189,6 +190,7 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     # Entries of W and of W + X that vary, as series.
     varying = [_varying(table.rows[r].rates, places) for r in chosen]
     pushing = [_joined(varying[k], _dragging(table, table.rows[r], places, rates)) for k, r in enumerate(chosen)]
+    laws = LawSeries(table.laws)
     for k in range(order - 1):
         right = [ZERO] * (count + len(chosen))
         if k == 0:
@@ -200,6 +202,7 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
             right[i] = right[i] - x * rates[j][k]
         for (i, j, m), x in table.gyration.items():
             right[i] = right[i] + x * _convolved(places[j][: k + 1], rates[m])
+        laws.add_to(right, places, rates, k)
         for n in range(len(chosen)):
             for j, series in pushing[n].items():
                 right[j] = right[j] + _convolved(found[n], series.varying(k))

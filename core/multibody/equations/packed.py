@@ -17,6 +17,8 @@ import numpy as np
 
 from core.arrays import Floats, Integers
 from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.laws.kernel import PackedLaws
+from core.multibody.laws.tape import Tape
 from core.multibody.table.table import Table
 
 GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 4}
@@ -47,6 +49,7 @@ class Packed(NamedTuple):
     group : (n,)
     binds : (e,)
         1 for an entry of W, 0 for one of X.
+    laws : PackedLaws
     """
 
     mass: Floats
@@ -66,6 +69,7 @@ class Packed(NamedTuple):
     rate: Floats
     group: Integers
     binds: Integers
+    laws: PackedLaws
 
 
 @dataclass(frozen=True)
@@ -227,6 +231,25 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
         rate,
         np.array([GROUPS[unit] for unit in table.units], dtype=np.int64),
         (np.arange(len(lines)) < binding).astype(np.int64),
+        _packed_laws(table, units),
+    )
+
+
+def _packed_laws(table: Table, units: Units) -> PackedLaws:
+    """Return the laws of a table: their values are in SI units, along the time of the kernels."""
+    tape, s, t = Tape.of(table.laws), units.lengths, units.time
+    push = [
+        (pair(x, s[i] + 2 * t - units.action), i, output)
+        for law, output in zip(table.laws, tape.outputs, strict=True)
+        for i, x in law.push.items()
+    ]
+    return PackedLaws(
+        _indices(tape.operations, 5),
+        _numbers([pair(x, 0) for x in tape.numbers]),
+        _numbers([pair(x, s[i] - t if rate else s[i]) for i, x, rate in tape.terms]),
+        np.array([i for i, _, _ in tape.terms], dtype=np.int64),
+        _numbers([x for x, _, _ in push]),
+        _indices([(i, output) for _, i, output in push], 2),
     )
 
 

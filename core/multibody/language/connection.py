@@ -61,8 +61,10 @@ class Connection:
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     name: str | None
 
-    everywhere = False
-    """Whether it acts on every body of a scene, and joins none to another."""
+    @property
+    def everywhere(self) -> bool:
+        """Whether it acts on every body of a scene, and joins none to another."""
+        return False
 
     continues = True
     """Whether a scene with it goes on where a string becomes slack, rather than ends there."""
@@ -74,6 +76,10 @@ class Connection:
 
     def places(self) -> Iterable[object]:
         """Return the places and bodies that it names, as they were written; None for one that it leaves out."""
+        return ()
+
+    def formulas(self) -> Iterable[object]:
+        """Return the values, as they were written, that may be formulas of the motion."""
         return ()
 
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from core.multibody.language.connection import Aspect, Connection, Surroundings, TwoEnded
+from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, listed
 from core.multibody.language.written import GROUND, Number, Place, Vector
 
 
 @dataclass(frozen=True)
 class Spring(TwoEnded):
-    """A linear spring between two places (N/m); unstretched at the start unless a rest length is given."""
+    """A spring between two places, linear by its `stiffness` (N/m) or with its pull as a formula `law` (N).
+
+    It is unstretched at the start unless a rest length is given. A law has the names `stretch`, `length` and `rate`.
+    """
 
     a: Place
     b: Place
-    stiffness: Number
+    stiffness: Number | None = None
     rest_length: Number | None = None
+    law: str | None = None
     name: str | None = None
     kind: ClassVar[str] = "spring"
+
+    def formulas(self) -> Iterable[object]:
+        """See `Connection.formulas`."""
+        return (self.law,)
 
 
 @dataclass(frozen=True)
@@ -62,12 +70,16 @@ class InverseSquare(TwoEnded):
 
 @dataclass(frozen=True)
 class Damper(TwoEnded):
-    """A force against the rate of a distance (N s/m), or with `measure` "turn" against that of a turn (N m s)."""
+    """A force against the rate of a distance (N s/m), or with `measure` "turn" against that of a turn (N m s).
+
+    It is the `coefficient` times that rate, or a formula `law` of it.
+    """
 
     a: Place
-    coefficient: Number
+    coefficient: Number | None = None
     b: Place = GROUND
     measure: Literal["length", "turn"] = "length"
+    law: str | None = None
     name: str | None = None
     kind: ClassVar[str] = "damper"
 
@@ -76,6 +88,10 @@ class Damper(TwoEnded):
         if self.measure != "turn":
             return ()
         return [(self.a, "turn"), (self.b, "turn")]
+
+    def formulas(self) -> Iterable[object]:
+        """See `Connection.formulas`."""
+        return (self.law,)
 
 
 @dataclass(frozen=True)
@@ -106,7 +122,10 @@ class SpinningFrame(Connection):
     name: str | None = None
     kind: ClassVar[str] = "spinning-frame"
 
-    everywhere = True
+    @property
+    def everywhere(self) -> bool:
+        """See `Connection.everywhere`."""
+        return True
 
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""
@@ -115,10 +134,14 @@ class SpinningFrame(Connection):
 
 @dataclass(frozen=True)
 class AppliedForce(Connection):
-    """A constant force on a place (N)."""
+    """A force on a place (N), whose components are numbers or formulas.
+
+    With `in_` "body" they are along the axes of the body, and turn with it.
+    """
 
     place: Place
     force: Vector
+    in_: Literal["body"] | None = None
     name: str | None = None
     kind: ClassVar[str] = "force"
 
@@ -126,10 +149,18 @@ class AppliedForce(Connection):
         """See `Connection.places`."""
         return (self.place,)
 
+    def formulas(self) -> Iterable[object]:
+        """See `Connection.formulas`."""
+        return listed(self.force)
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(self.place, aspect) for aspect in ATTITUDE] if self.in_ == "body" else ()
+
 
 @dataclass(frozen=True)
 class Torque(Connection):
-    """A constant torque on a body (N m): a number in the plane, a vector in space."""
+    """A torque on a body (N m): a number in the plane, there also a formula, and a vector of numbers in space."""
 
     body: str
     torque: Number | Vector
@@ -140,6 +171,34 @@ class Torque(Connection):
         """See `Connection.places`."""
         return (self.body,)
 
+    def formulas(self) -> Iterable[object]:
+        """See `Connection.formulas`."""
+        return (self.torque,)
+
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""
         return [(self.body, "turn" if surroundings.plane else "orientation")]
+
+
+@dataclass(frozen=True)
+class Field(Connection):
+    """A force (N) or an acceleration (m/s^2) of every body, or of some, by numbers and formulas of its centre."""
+
+    acceleration: Vector | None = None
+    force: Vector | None = None
+    on: Sequence[str] | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "field"
+
+    @property
+    def everywhere(self) -> bool:
+        """See `Connection.everywhere`."""
+        return self.on is None
+
+    def places(self) -> Iterable[object]:
+        """See `Connection.places`."""
+        return listed(self.on)
+
+    def formulas(self) -> Iterable[object]:
+        """See `Connection.formulas`."""
+        return [*listed(self.acceleration), *listed(self.force)]

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from core.multibody.language.connection import Connection
+from core.multibody.language.motion_formulas import references
 from core.multibody.language.scene import Scene, ScenePart
 from core.multibody.language.written import GROUND
 
@@ -32,7 +33,10 @@ def independent_parts(scene: Scene) -> Sequence[Scene]:
     order = {name: number for number, name in enumerate(scene.bodies)}
     joined: dict[int, list[str]] = {}
     for number, connection in scene.numbered():
-        joined[number] = list(_bodies_of(connection))
+        named = {place.partition(".")[0] for place, _ in references(connection.formulas(), order, scene.let)}
+        if connection.everywhere and named:
+            return [scene]
+        joined[number] = [*_bodies_of(connection), *named]
         if not all(name in order for name in joined[number]):
             return [scene]
         firsts = sorted({first_of(name) for name in joined[number]}, key=order.__getitem__)

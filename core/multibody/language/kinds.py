@@ -10,6 +10,7 @@ from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.forces import (
     AppliedForce,
     Damper,
+    Field,
     Gravitation,
     InverseSquare,
     Motor,
@@ -44,6 +45,7 @@ KINDS: Mapping[str, type[Connection]] = MappingProxyType(
             SpinningFrame,
             AppliedForce,
             Torque,
+            Field,
         )
     }
 )

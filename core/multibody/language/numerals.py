@@ -17,7 +17,7 @@ from typing import Any, Literal
 from flint import arb, fmpq
 
 from core.errors import InvalidParameter, Path
-from core.formulas import FUNCTIONS, LARGEST_EXPONENT, Arithmetic, Formula, is_name
+from core.formulas import FUNCTIONS, LARGEST_EXPONENT, NAMES_OF_FUNCTIONS, Arithmetic, Formula, is_name, names_in
 from core.multibody.algebra.polynomials import Ball, is_zero
 
 MOST_DIGITS = 200
@@ -40,6 +40,11 @@ LONGEST_NAME = 64
 
 OF_STATE = ("at", "angle", "axes", "velocity", "angular_velocity")
 """Fields of a body that say where it is and how it moves at the start."""
+
+NAMES_OF_MOTION = frozenset(
+    ["t", "x", "y", "z", "vx", "vy", "vz", "speed", "length", "rate", "angle", "turn", "stretch"]
+)
+"""Names of formulas of the motion that need no body before them."""
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 """What bodies, places, connections and numbers may be called."""
@@ -68,6 +73,8 @@ class Numerals:
         Filled with the numbers other than zero by their paths, as they are read; formulas are none.
     every : dict
         Filled with all numbers by their paths, formulas too.
+    formulas : dict of str to str
+        Names in `let` that are formulas of the motion.
     """
 
     let: Mapping[str, Ball]
@@ -77,6 +84,7 @@ class Numerals:
     instead: Mapping[Path, Ball] = field(default_factory=dict)
     read: dict[Path, Ball] = field(default_factory=dict, repr=False)
     every: dict[Path, Ball] = field(default_factory=dict, repr=False)
+    formulas: dict[str, str] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(
@@ -105,6 +113,12 @@ class Numerals:
         for name, number in let.items():
             if not is_name(name):
                 raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
+            if isinstance(number, str) and _is_of_motion(number, found):
+                found.formulas[name] = number
+                continue
+            circle = _circle(name, let)
+            if circle:
+                raise InvalidParameter(("let", name), f"not be used for itself: {' uses '.join(circle)}")
             known[name] = found.number(number, ("let", name))
         return found
 
@@ -180,6 +194,30 @@ class Numerals:
         return tuple(self.number(entry, (*path, i)) for i, entry in enumerate(value))
 
 
+def _is_of_motion(text: str, numerals: Numerals) -> bool:
+    """Return whether a formula in `let` has names of the motion, or of others that have."""
+    unknown = names_in(text) - {*numerals.let, *NAMES_OF_FUNCTIONS, "pi"}
+    return bool(unknown) and all(
+        "." in name or name in NAMES_OF_MOTION or name in numerals.formulas for name in unknown
+    )
+
+
+def _circle(name: str, let: Mapping[str, object]) -> list[str]:
+    """Return names of which each uses the next, from a name to itself; nothing where there are none."""
+    trails = [[name]]
+    seen = {name}
+    while trails:
+        trail = trails.pop()
+        text = let.get(trail[-1])
+        for used in sorted(names_in(text)) if isinstance(text, str) else ():
+            if used == name:
+                return [*trail, name]
+            if used in let and used not in seen:
+                seen.add(used)
+                trails.append([*trail, used])
+    return []
+
+
 def _exact(value: object, path: Path) -> Fraction:
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, Fraction)):
         raise InvalidParameter(path, "be a number")
@@ -249,6 +287,6 @@ BALLS = Arithmetic[Ball](
     _quotient,
     _power,
     {name: abs if name == "abs" else getattr(arb, name) for name in FUNCTIONS}
-    | {"sqrt": _root, "asin": _of_a_sine(arb.asin), "acos": _of_a_sine(arb.acos)},
+    | {"atan2": arb.atan2, "sqrt": _root, "asin": _of_a_sine(arb.asin), "acos": _of_a_sine(arb.acos)},
 )
 """Formulas in balls of the precision of the context."""

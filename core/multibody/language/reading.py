@@ -70,14 +70,15 @@ def _connection(entry: Any, path: Path, kinds: Mapping[str, type[Connection]]) -
 def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
     if not isinstance(value, Mapping):
         raise InvalidParameter(path or ("scene",), "be an object")
-    known = {entry.name: entry for entry in fields(cls)}
+    # A word of Python's has a sign behind it as the name of a field.
+    known = {entry.name.rstrip("_"): entry for entry in fields(cls)}
     for key in value:
         if key not in known:
             raise unknown_field(key, known, path)
     for name, entry in known.items():
         if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
             raise InvalidParameter((*path, name), "be given")
-    return dict(value)
+    return {known[key].name: entry for key, entry in value.items()}
 
 
 def unknown_field(key: str, known: Collection[str], path: Path) -> InvalidParameter:

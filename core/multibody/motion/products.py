@@ -44,6 +44,10 @@ class Products(NamedTuple):
         Coefficients of the coordinates, each order at k s.
     inverses : (order + 1, 2)
         Inverses of the natural numbers, in pairs.
+    laws : (o, order + 1, 2)
+        Coefficients of the operations of laws, in pairs.
+    way : (1,)
+        Sign of the times that follow.
     """
 
     at: Integers
@@ -56,6 +60,8 @@ class Products(NamedTuple):
     right: Floats
     path: Floats
     inverses: Floats
+    laws: Floats
+    way: Floats
 
 
 @kernel()
@@ -114,6 +120,8 @@ def products_of(table: Packed, order: int, planes: int) -> Products:
         np.zeros((planes, size)),
         np.zeros((planes, (order + 1) * size)),
         inverses,
+        np.zeros((table.laws.operations.shape[0], order + 1, 2)),
+        np.ones(1),
     )
 
 

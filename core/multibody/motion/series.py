@@ -26,6 +26,7 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
 from core.multibody.equations.packed import Packed
 from core.multibody.equations.saddle import Saddle, inverted, saddle_space
+from core.multibody.laws.kernel import values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread, started, summed
 
 SHORTEST = 1e-12
@@ -62,6 +63,10 @@ def coefficients(table: Packed, space: Saddle, products: Products, since: int) -
             right[table.stiff_at[p, 0]] -= table.stiff[p, 0] * path[k * size + table.stiff_at[p, 1]]
         for p in range(table.damp.shape[0]):
             right[table.damp_at[p, 0]] -= table.damp[p, 0] * (k + 1) * path[(k + 1) * size + table.damp_at[p, 1]]
+        if table.laws.push.shape[0] > 0:
+            values_of_laws(table.laws, products.path, size, k, products.way[0], products.laws)
+        for p in range(table.laws.push.shape[0]):
+            right[table.laws.push_at[p, 0]] += table.laws.push[p, 0] * products.laws[table.laws.push_at[p, 1], k, 0]
         summed(products, k)
         for p in range(at.shape[0]):
             row = np.uintp(at[p, ROW])
@@ -226,6 +231,7 @@ def advance(
     if not inverted(table, lines, space):
         return SINGULAR, 0
     way = 1.0 if end >= clock[0] else -1.0
+    products.way[0] = way
     for step in range(series.shape[0]):
         starts[step, 0], starts[step, 1] = clock[0], clock[1]
         left = (end - clock[0]) - clock[1]

@@ -19,6 +19,7 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.equations.packed import Packed
 from core.multibody.equations.saddle import CORRECTED, FAILED, Saddle, inverted_pairs, padded, saddle_space
+from core.multibody.laws.kernel import PackedLaws, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread_pairs, started, summed_pairs
 from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, SINGULAR, coefficients, step_size
 
@@ -59,6 +60,9 @@ def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: 
             i, j = table.damp_at[p, 0], (k + 1) * size + table.damp_at[p, 1]
             ph, pl = dd_mul_d(path[0, j], path[1, j], k + 1.0)
             right[0, i], right[1, i] = gathered(right[0, i], right[1, i], -table.damp[p, 0], -table.damp[p, 1], ph, pl)
+        if table.laws.push.shape[0] > 0:
+            values_of_laws(table.laws, path, size, k, products.way[0], products.laws)
+        _pushed(table.laws, products.laws, k, right)
         summed_pairs(products, k)
         for p in range(at.shape[0]):
             row = np.uintp(at[p, ROW])
@@ -81,6 +85,16 @@ def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: 
         if k < last:
             spread_pairs(table, products, k)
     coefficients(table, space, products, until)
+
+
+@kernel()
+def _pushed(laws: PackedLaws, values: Floats, k: int, right: Floats) -> None:
+    """Add coefficient k of the forces of laws to a right-hand side of shape (2, s)."""
+    for p in range(laws.push.shape[0]):
+        i, o = laws.push_at[p, 0], laws.push_at[p, 1]
+        right[0, i], right[1, i] = gathered(
+            right[0, i], right[1, i], laws.push[p, 0], laws.push[p, 1], values[o, k, 0], values[o, k, 1]
+        )
 
 
 @kernel(forceinline=True)
@@ -226,6 +240,7 @@ def advance_pairs(
     if found == FAILED:
         return SINGULAR, 0
     way = 1.0 if end >= clock[0] else -1.0
+    products.way[0] = way
     for step in range(series.shape[0]):
         starts[step, 0], starts[step, 1] = clock[0], clock[1]
         left = (end - clock[0]) - clock[1]
@@ -290,6 +305,7 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
     lines = np.empty((table.lines.shape[0], 2))
     space = saddle_space(table, 2)
     right, found = np.zeros((2, padded(n + m))), np.empty((2, padded(n + m)))
+    path, laws = np.empty((2, 2 * n)), np.zeros((table.laws.operations.shape[0], 1, 2))
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
         if inverted_pairs(table, lines, space) == FAILED:
@@ -320,6 +336,12 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
             right[0, r], right[1, r] = gathered(
                 right[0, r], right[1, r], -table.slopes[p, 0], -table.slopes[p, 1], ph, pl
             )
+        if table.laws.push.shape[0] > 0:
+            for i in range(n):
+                path[0, i], path[1, i] = q[s, i, 0], q[s, i, 1]
+                path[0, n + i], path[1, n + i] = v[s, i, 0], v[s, i, 1]
+            values_of_laws(table.laws, path, n, 0, 1.0, laws)
+            _pushed(table.laws, laws, 0, right)
         for i in range(n + m):
             right[0, i], right[1, i] = settled(right[0, i], right[1, i])
         for b in range(0, right.shape[1], WIDTH):

@@ -17,6 +17,7 @@ from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, entr
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
+from core.multibody.laws.samples import values_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.series_pairs import multipliers_pairs
 from core.multibody.reduction.reduction import Reduced
@@ -275,6 +276,9 @@ class Whole:
         terms += [(i, abs(float(x)) * place[j]) for (i, j), x in table.stiffness.items()]
         terms += [(i, abs(float(x)) * rate[j]) for (i, j), x in table.damping.items()]
         terms += [(i, abs(float(x)) * place[j] * rate[k]) for (i, j, k), x in table.gyration.items()]
+        for law in table.laws:
+            pushed = float(np.max(np.abs(values_of(law, q, v)[0]), initial=0.0))
+            terms += [(i, abs(float(x)) * pushed) for i, x in law.push.items()]
         power = 2 * units.time - units.action
         return self._of_each_row(max((float(np.ldexp(x, units.lengths[i] + power)) for i, x in terms), default=0.0))
 
@@ -314,6 +318,9 @@ class Whole:
         for j, value in force.of_squares.items():
             term = float(value) * v[:, j, 0] ** 2
             total, size = total + term, size + np.abs(term)
+        for number, value in force.of_laws.items():
+            given, given_size = values_of(self.measures.table.laws[number], q, v)
+            total, size = total + float(value) * given, size + abs(float(value)) * given_size
         for row, poly in force.terms:
             factor, factor_size = values(poly, q)
             total = total + factor * multipliers[:, row]

@@ -46,6 +46,12 @@ class PartProof:
             self.found = _in_closed_forms(modelled(scene))
             self.multipliers = multipliers_at_start(self.found.described.measures, self.found.whole.acceleration)
             self.forces = forces_at_start(self.found.described.measures, self.multipliers)
+        if self.found.described.measures.table.laws:
+            raise NotApplicable(
+                "digits are not proven yet where forces are formulas",
+                path=("connections",),
+                remedy="ask POST /v1/scenes, whose errors are measured against pairs of doubles",
+            )
         _require_exact(self.found)
         slack = slack_strings(self.found, self.forces)
         if slack:

@@ -17,9 +17,11 @@ from core.multibody.table.table import Table
 
 def free_shift(table: Table) -> Line | None:
     """Return a direction with mass along which a part with quadratic terms can be shifted; None without one."""
+    pushed = {i for law in table.laws for i in law.coordinates()}
     for part in parts(table):
         inside = set(part)
-        if len(part) < 2 or not _quadratic(table, inside):
+        # What a formula makes of a shift is not known.
+        if len(part) < 2 or not _quadratic(table, inside) or inside & pushed:
             continue
         elimination = Elimination()
         for line in _conditions(table, inside):

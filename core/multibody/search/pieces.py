@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from core.arrays import Floats, Integers
-from core.errors import AccuracyUnreachable
+from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly
 from core.multibody.equations.packed import Packed, Units, two_to
 from core.multibody.motion.whole import Whole, spread
@@ -102,7 +102,19 @@ class Pieces:
         return total
 
     def force(self, force: Force) -> Curve:
-        """Return a force."""
+        """Return a force.
+
+        Raises
+        ------
+        NotApplicable
+            For a force that is a formula.
+        """
+        if force.of_laws:
+            raise NotApplicable(
+                f'"{force.name}" is a formula: when it takes a value, and how large it becomes, is not answered yet',
+                path=("outputs",),
+                remedy="ask for its samples, by forces-in-time",
+            )
         total = self.of(force.of_state)
         for j, factor in force.of_rates.items():
             total = total.plus(factor, self.rate(j))

@@ -110,6 +110,8 @@ def _base(scene: Scene, numerals: Numerals) -> Described:
 
 def _rests(base: Described, touching: Sequence[int]) -> bool:
     table = base.measures.table
+    if table.laws:
+        raise NotApplicable("ranges of rest are not answered yet where forces are formulas", path=("outputs",))
     return all(is_zero(x) for x in table.v) and stays(table, base.measures.unilateral, touching)
 
 

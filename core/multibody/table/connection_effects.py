@@ -25,6 +25,8 @@ class Force:
         Constant coefficients of rates.
     of_squares : dict
         Constant coefficients of squares of rates.
+    of_laws : dict
+        Constant coefficients of the values of laws, by their number in the table.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Force:
     of_state: Poly = field(default_factory=dict)
     of_rates: dict[int, Ball] = field(default_factory=dict)
     of_squares: dict[int, Ball] = field(default_factory=dict)
+    of_laws: dict[int, Ball] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,8 @@ class WorkTerm:
         Power as factor times coordinate times rate.
     rows : list of (row, polynomial)
         Power of what is driven: the multiplier of the row times less what the row says of the clock.
+    laws : list of int
+        Numbers of the laws of the table whose forces have the power.
     """
 
     name: str
@@ -57,6 +62,7 @@ class WorkTerm:
     square: tuple[Ball, dict[int, Ball]] | None = None
     terms: list[tuple[Ball, int, int]] = field(default_factory=list)
     rows: list[tuple[int, Poly]] = field(default_factory=list)
+    laws: list[int] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

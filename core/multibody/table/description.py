@@ -9,15 +9,25 @@ from core.errors import Path
 from core.multibody.algebra.polynomials import Poly, is_zero
 from core.multibody.language.connection import Aspect, Surroundings
 from core.multibody.language.faults_of_parts import FaultsOfParts
+from core.multibody.language.motion_formulas import TURNS, references
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
-from core.multibody.table import attraction, chains, contact_geometry, joints, laws, rolling_in_space, strings
+from core.multibody.table import (
+    attraction,
+    chains,
+    contact_geometry,
+    formula_laws,
+    joints,
+    laws,
+    rolling_in_space,
+    strings,
+)
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.coordinates import Coordinates, dimension_of
 from core.multibody.table.measures import Measures
 from core.multibody.table.rows import add_rows
 
-FORMS = (attraction, chains, contact_geometry, joints, laws, rolling_in_space, strings)
+FORMS = (attraction, chains, contact_geometry, formula_laws, joints, laws, rolling_in_space, strings)
 """The modules with the forms of `add_rows` for the kinds of the catalogue: their import registers them."""
 
 
@@ -100,4 +110,6 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
             see(place)
         for place, aspect in connection.aspects(surroundings):
             see(place, aspect)
+        for place, column in references(connection.formulas(), scene.bodies, scene.let):
+            see(place, *(("turn",) if plane and column in TURNS else ()))
     return found

@@ -23,18 +23,27 @@ from core.multibody.language.connection import TwoEnded
 from core.multibody.language.forces import AppliedForce, Damper, Motor, SpinningFrame, Spring, Torque, TorsionSpring
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Force, WorkTerm
+from core.multibody.table.formula_laws import (
+    clock,
+    damper_by_law,
+    force_by_formulas,
+    spring_by_law,
+    torque_by_formula,
+)
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.rows import add_rows
-from core.multibody.table.table import Row
 from core.near_names import near_and_all
 
 
 @add_rows.register
 def spring(connection: Spring, measures: Measures, name: str, path: Path) -> None:
-    """Add a linear spring between two places: energy k (l - l_0)^2/2."""
+    """Add a spring between two places: linear, of energy k (l - l_0)^2/2, or with its pull as a formula."""
     a, b = _ends(measures, connection, path)
+    if connection.law is not None:
+        spring_by_law(connection, measures, name, a, b, path)
+        return
     k = _positive(measures, connection.stiffness, (*path, "stiffness"))
     d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]
     rest = None
@@ -80,7 +89,6 @@ def torsion_spring(connection: TorsionSpring, measures: Measures, name: str, pat
 @add_rows.register
 def damper(connection: Damper, measures: Measures, name: str, path: Path) -> None:
     """Add a force against the rate of a distance or of a turn."""
-    c = _positive(measures, connection.coefficient, (*path, "coefficient"))
     if connection.measure == "turn":
         measured, unit = _turn(measures, connection, path), "N m"
     elif connection.measure == "length":
@@ -88,6 +96,10 @@ def damper(connection: Damper, measures: Measures, name: str, path: Path) -> Non
         measured, unit = coordinate(measures.length(name, a, b, path)), "N"
     else:
         raise InvalidParameter((*path, "measure"), 'be "length" or "turn"')
+    if connection.law is not None:
+        damper_by_law(connection, measures, name, measured, unit, path)
+        return
+    c = _positive(measures, connection.coefficient, (*path, "coefficient"))
     slopes = {key[0]: value for key, value in measured.items() if key}
     for i, x in slopes.items():
         for j, y in slopes.items():
@@ -110,16 +122,6 @@ def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
     if not is_zero(rate):
         measures.works.append(WorkTerm(name, rows=[(row, constant(-rate))]))
     measures.force(f"{name}.torque", [(row, constant(ONE))], "N m")
-
-
-def clock(measures: Measures) -> int:
-    """Return the coordinate that is time, made once."""
-    table = measures.table
-    if "clock" in table.names:
-        return table.names.index("clock")
-    index = table.coordinate("clock", "s", ZERO)
-    table.rows.append(Row("clock", None, {index: constant(ONE)}, ONE))
-    return index
 
 
 @add_rows.register
@@ -168,7 +170,9 @@ def spinning_frame(connection: SpinningFrame, measures: Measures, name: str, pat
 
 @add_rows.register
 def force(connection: AppliedForce, measures: Measures, name: str, path: Path) -> None:
-    """Add a constant force on a place."""
+    """Add a force on a place."""
+    if force_by_formulas(connection, measures, name, path):
+        return
     point = measures.coordinates.point(connection.place, (*path, "place"))
     if point.body is None:
         raise InvalidParameter((*path, "place"), "belong to a body")
@@ -184,7 +188,9 @@ def force(connection: AppliedForce, measures: Measures, name: str, path: Path) -
 
 @add_rows.register
 def torque(connection: Torque, measures: Measures, name: str, path: Path) -> None:
-    """Add a constant torque on a body."""
+    """Add a torque on a body."""
+    if torque_by_formula(connection, measures, name, path):
+        return
     table, body = measures.table, connection.body
     if measures.dimension == 2:
         value = measures.numerals.number(connection.torque, (*path, "torque"))
@@ -222,6 +228,8 @@ def _ends(measures: Measures, connection: TwoEnded, path: Path) -> tuple[Point, 
 
 
 def _positive(measures: Measures, value: object, path: Path) -> Ball:
+    if value is None:
+        raise InvalidParameter(path, "be given")
     number = measures.numerals.number(value, path)
     if not number > 0:
         raise InvalidParameter(path, "be greater than 0")

@@ -26,8 +26,8 @@ from core.multibody.algebra.polynomials import (
 )
 from core.multibody.language.contacts import Rolling
 from core.multibody.table.connection_effects import WorkTerm
+from core.multibody.table.formula_laws import clock
 from core.multibody.table.frames import Point
-from core.multibody.table.laws import clock
 from core.multibody.table.measures import COMPONENTS, Measures
 from core.multibody.table.rolling import rate_of, rolling_in_plane, sum_of_rates
 from core.multibody.table.rows import add_rows

@@ -1,9 +1,10 @@
 """The table of quadratics that every scene becomes, in balls.
 
-    M q'' = b - K q - D q' + B(q, q') + (W(q) + X(q))^T lambda,     W(q) q' = r,
+    M q'' = b - K q - D q' + B(q, q') + G f(q, q') + (W(q) + X(q))^T lambda,     W(q) q' = r,
 
-with constant M, b, K, D, B and with W and X affine in q; X is friction. A row is either a measure that stays zero, a
-polynomial of degree two at most whose gradient is its line of W, or a rate row that is the derivative of nothing.
+with constant M, b, K, D, B, G and with W and X affine in q; X is friction, and f are the values of formulas. A row is
+either a measure that stays zero, a polynomial of degree two at most whose gradient is its line of W, or a rate row that
+is the derivative of nothing.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ from core.multibody.algebra.polynomials import (
     substituted,
     variables,
 )
+from core.multibody.laws.law import Law
+from core.multibody.laws.series import values_at
 
 
 @dataclass
@@ -119,6 +122,8 @@ class Table:
     load, stiffness, damping, gyration : dict
         b by i; K by (i, j); D by (i, j), both with every entry; B by (i, j, k): its product with q_j q_k'.
     rows : list of Row
+    laws : list of Law
+        Formulas whose values push coordinates.
     q, v : list of balls
         Coordinates and rates at the start.
     """
@@ -131,6 +136,7 @@ class Table:
     damping: dict[tuple[int, int], Ball] = field(default_factory=dict)
     gyration: dict[tuple[int, int, int], Ball] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
+    laws: list[Law] = field(default_factory=list)
     q: list[Ball] = field(default_factory=list)
     v: list[Ball] = field(default_factory=list)
 
@@ -163,7 +169,7 @@ class Table:
         _add(self.gyration, (i, j, k), value)
 
     def forces(self) -> list[Ball]:
-        """Return b - K q - D q' + B(q, q') at the start."""
+        """Return b - K q - D q' + B(q, q') + G f(q, q') at the start."""
         q, v = self.q, self.v
         total = [ZERO] * len(q)
         for i, value in self.load.items():
@@ -174,6 +180,9 @@ class Table:
             total[i] = total[i] - value * v[j]
         for (i, j, k), value in self.gyration.items():
             total[i] = total[i] + value * q[j] * v[k]
+        for law, force in zip(self.laws, values_at(self.laws, q, v), strict=True):
+            for i, factor in law.push.items():
+                total[i] = total[i] + factor * force
         return total
 
     def slip_of(self, row: Row) -> tuple[Ball, Ball]:
@@ -266,6 +275,7 @@ class Table:
             for key in [key for key, value in clean.items() if 0 in value]:
                 del clean[key]
         new.rows = [row.along(expressions) for row in self.rows]
+        new.laws = [law for law in (own.along(expressions) for own in self.laws) if law.push]
         return new
 
 

@@ -12,6 +12,7 @@ from flint import arb
 from core.arrays import Floats
 from core.balls import precision
 from core.multibody.algebra.polynomials import BITS, ONE, Ball
+from core.multibody.laws.samples import values_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.whole import Whole, values
 from core.multibody.search.curves import Curve
@@ -101,6 +102,10 @@ def power_of(whole: Whole, work: WorkTerm) -> Callable[[State], Floats]:
             total -= float(work.square[0]) * rate**2
         for factor, i, j in work.terms:
             total += float(factor) * q[:, i, 0] * v[:, j, 0]
+        for number in work.laws:
+            law = whole.measures.table.laws[number]
+            rate = sum((float(x) * v[:, i, 0] for i, x in law.push.items()), np.zeros(len(q)))
+            total += values_of(law, q, v)[0] * rate
         if work.rows:
             multipliers = whole.multipliers(q, v)
             for row, poly in work.rows:

@@ -18,6 +18,7 @@ from flint import arb, arb_mat
 from core.multibody.algebra.polynomials import ZERO, Ball, evaluated
 from core.multibody.equations.dynamics import kinetic, potential
 from core.multibody.equations.expansion import saddle
+from core.multibody.laws.series import values_at
 from core.multibody.motion.attitudes import angular_velocity, quaternion
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.table import Table
@@ -138,4 +139,7 @@ def _force(force: Force, state: _State) -> list[Ball]:
         total = total + value * v[j]
     for j, value in force.of_squares.items():
         total = total + value * v[j] * v[j]
+    if force.of_laws:
+        laws = values_at(state.table.laws, q, v)
+        total = sum((value * laws[number] for number, value in force.of_laws.items()), total)
     return [sum((evaluated(poly, q) * state.multipliers.get(row, ZERO) for row, poly in force.terms), total)]

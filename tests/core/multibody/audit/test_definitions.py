@@ -58,7 +58,9 @@ def test_answered_forces_and_accelerations_satisfy_newton_and_euler(name: str) -
     placement, motion, accelerations = {}, {}, {}
     for body, given in found.bodies.items():
         start, columns = given.start, answer.trajectory.columns
-        placement[body] = Pose(*(None if x is None else x[None] for x in (start.position, start.rotation, start.turn)))  # type: ignore[arg-type]
+        placement[body] = Pose(
+            *(None if x is None else x[None] for x in (start.position, start.rotation, start.turn, start.time))  # type: ignore[arg-type]
+        )
         spin = angular = None
         linear = np.array(answer.accelerations[body].linear)[None]
         if given.inertia is not None:

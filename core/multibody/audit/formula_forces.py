@@ -1,0 +1,104 @@
+"""Definitions of forces that are formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from core.multibody.audit.definition import Definition
+from core.multibody.audit.formulas import FormulaValue
+from core.multibody.audit.laws import Pull, Twisting
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, dot
+
+
+@dataclass(frozen=True)
+class PullByFormula(Pull):
+    """A force along the line between two places whose value is a formula."""
+
+    kind: ClassVar[str] = "spring"
+    formula: FormulaValue
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return True
+
+    def laws(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.laws`."""
+        return {f"{self.name}.force": self.formula.value(placement, motion)}
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        return self.formula.size(placement, size, speed)
+
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        return self.formula.quickness(least)
+
+
+@dataclass(frozen=True)
+class TwistByFormula(Twisting):
+    """A moment between two turns, or on one, whose value is a formula times a sign."""
+
+    kind: ClassVar[str] = "torque"
+    formula: FormulaValue
+    sign: float
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return True
+
+    def laws(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.laws`."""
+        return {f"{self.name}.torque": self.sign * self.formula.value(placement, motion)}
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        return self.formula.size(placement, size, speed)
+
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        return self.formula.quickness(0.0)
+
+
+@dataclass(frozen=True)
+class ForcesByFormulas(Definition):
+    """Forces on places by the formulas of their components, each force times a factor.
+
+    Attributes
+    ----------
+    every : tuple of (Place, tuple of FormulaValue, float)
+    turns : bool
+        Whether the components are along the axes of the body.
+    """
+
+    kind: ClassVar[str] = "force"
+    every: tuple[tuple[Place, tuple[FormulaValue, ...], float], ...]
+    turns: bool = False
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return True
+
+    def load(self, placement: Placement, motion: Motion, virtual: Motion) -> Numbers:
+        """See `Definition.load`."""
+        total: Numbers = np.zeros(())
+        for place, formulas, factor in self.every:
+            values = np.broadcast_arrays(*(formula.value(placement, motion) for formula in formulas))
+            force = factor * np.stack(values, axis=-1)
+            if self.turns and place.body is not None:
+                rotation = placement[place.body].rotation
+                assert rotation is not None, "a force turns with a body whose attitude is known"
+                force = (rotation @ force[..., None])[..., 0]
+            total = total + dot(place.velocity(placement, virtual), force)
+        return total
+
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        return max(
+            formula.quickness(least / factor if factor > 0.0 else 0.0)
+            for _, formulas, factor in self.every
+            for formula in formulas
+        )

@@ -1,0 +1,1 @@
+"""Forces that are formulas of time, places and rates: their graphs, and the Taylor coefficients of their values."""
