@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 
 import numpy as np
 from flint import arb
 
 from core.arrays import Floats
-from core.multibody.algebra.polynomials import Ball, is_zero
-from core.multibody.equations.packed import pair
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.equations.packed import nearest, pair
 from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
@@ -28,15 +29,8 @@ def in_closed_form(phase: Phase) -> bool:
 
 
 def phase_at(phases: Sequence[Phase], time: float) -> int:
-    """Return in which phase a time is; at an event it is in the one that begins."""
-    low, high = 0, len(phases) - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if arb(time) < phases[middle].start:
-            high = middle - 1
-        else:
-            low = middle
-    return low
+    """Return in which phase a time is; at the double that an event has it is in the one that begins."""
+    return max(bisect_right(phases, time, key=lambda phase: nearest(phase.start)) - 1, 0)
 
 
 def how_until(phases: Sequence[Phase], time: float) -> How:
@@ -120,6 +114,7 @@ def _bouncing(phase: Phase, times: Times) -> WholeStates:
     errors = np.zeros((2, len(times), count))
     for s, t in enumerate(times):
         late: Ball = arb(t) - phase.start
+        late = late if late > 0 else ZERO
         for k, (vector, out) in enumerate(zip(phase.bounces.at(late), (q, v), strict=True)):
             for i, x in enumerate(vector):
                 out[s, i] = pair(x, 0)

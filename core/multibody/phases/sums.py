@@ -17,7 +17,7 @@ from flint import arb
 from core.arrays import Floats, Integers
 from core.errors import NotApplicable
 from core.multibody.contacts.contact_states import force_names
-from core.multibody.equations.packed import pair
+from core.multibody.equations.packed import nearest, pair
 from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import rates_along
 from core.multibody.phases.phase import Phase
@@ -69,8 +69,9 @@ class Sums:
         self.motion, self.times, self.how = columns.motion, times, how
         pieces = stretches(columns.motion, float(np.max(times, initial=0.0)), finer=columns.finer)
         self.pieces = [piece for piece in pieces if piece.length > 0.0 or not piece.number]
-        starts = [piece.start for piece in self.pieces]
-        self.where = np.array([_last_before(starts, float(t)) for t in times], dtype=np.int64)
+        # As of phases: at the double that an event has a time is in the stretch that begins.
+        starts = [nearest(piece.start) for piece in self.pieces]
+        self.where = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
         self._smooth: dict[tuple[int, tuple[int, ...], float], Floats] = {}
 
     def paths(self) -> dict[str, Column]:
@@ -252,18 +253,6 @@ class Sums:
         ends = piece.columns(np.array([piece.length]), self.how, "energy-in-time")["energy.kinetic"]
         starts = following.columns(np.zeros(1), self.how, "energy-in-time")["energy.kinetic"]
         one.add(float(starts.values[0] - ends.values[0]), starts.error + ends.error)
-
-
-def _last_before(starts: Sequence[arb], time: float) -> int:
-    """Return in which stretch a time is; at an event it is in the one that begins."""
-    low, high = 0, len(starts) - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if arb(time) < starts[middle]:
-            high = middle - 1
-        else:
-            low = middle
-    return low
 
 
 def _sized(function: Callable[[State], Floats]) -> Power:

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.motion.whole import Whole
 from core.multibody.search.curves import Curve
@@ -91,7 +93,7 @@ class FirstOfMotion:
                 (expansions.places, expansions.forces), expansions.coarse, self._numbers, strict=True
             )
         ]
-        self._watched = watched
+        self._watched, self._places = watched, expansions.places
 
     @property
     def below(self) -> list[int]:
@@ -105,8 +107,18 @@ class FirstOfMotion:
         for search, numbers in zip(self._searches, self._numbers, strict=True):
             if best is not None:
                 time = abs(best[1].time)
-                end = min(end, time * BEFORE_SINGULAR if self._watched[best[0]].singular else time)
+                end = min(end, time * BEFORE_SINGULAR if self._is_singular(best[1].time) else time)
             found = search.until(end)
             if found is not None and (best is None or abs(found.time) < abs(best[1].time)):
                 best = numbers[found.index], found
         return best
+
+    def _is_singular(self, time: float) -> bool:
+        """Return whether something of which a zero is a singular place is about to vanish at a time of the motion."""
+        lengths = [one.along for one in self._watched if one.singular]
+        if not lengths:
+            return False
+        motion, soon = self._places[0], (1.0 - BEFORE_SINGULAR) * time
+        pieces = motion(np.array([time]), np.array([soon]))
+        curves = [along(pieces).values[0, :2, 0] for along in lengths]
+        return any(abs(value) <= abs(change * soon / pieces.lengths[0]) for value, change in curves)

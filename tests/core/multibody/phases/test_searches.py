@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 from mpmath import asin, mp, mpf, sqrt
 
@@ -202,17 +204,46 @@ def test_samples_at_the_impacts_do_not_hide_that_rates_jump_there() -> None:
     assert [one.time for one in answer.occurrences[:2]] == [0.75, 1.125]
 
 
-def test_a_weight_that_reaches_its_peg_as_the_other_one_lands_ends_there() -> None:
-    """Weights of 2 and 1 kg at -1 m: a = g/3, and both go 1 m in sqrt(6/g) s."""
-    bodies = {"left": {"mass": 2, "at": ["-1/2", -1]}, "right": {"mass": 1, "at": ["1/2", -1]}}
-    string = {"kind": "string", "name": "s", "through": ["left", ["-1/2", 0], ["1/2", 0], "right"]}
+@pytest.mark.parametrize(("heavy", "acceleration"), [(2, "1/3"), (3, "1/2"), (9, "4/5")])
+@pytest.mark.parametrize("restitution", ["0", "1/2"])
+def test_a_weight_that_reaches_its_peg_as_the_other_one_lands_ends_there(
+    heavy: int, acceleration: str, restitution: str
+) -> None:
+    """Weights of m and 1 kg at -1 m: a = g (m - 1)/(m + 1), and both go 1 m in sqrt(2/a) s."""
+    bodies = {"left": {"mass": heavy, "at": ["-1/2", -1]}, "right": {"mass": 1, "at": ["1/2", -1]}}
+    through = ["left", ["-1/2", 0], ["1/2", 0], "right"]
+    string = {"kind": "string", "name": "s", "through": through, "restitution": restitution}
     floor = {"kind": "contact", "place": "left", "on": {"at": [0, -2]}, "restitution": "1/2"}
     scene = {"gravity": [0, -10], "bodies": bodies, "connections": [string, floor]}
     answer = solve_scene(read(scene), [3.0])
     assert answer.ended is not None
     assert (answer.ended.kind, answer.ended.name) == ("singular", "s")
     with mp.workdps(30):
-        assert abs(answer.ended.time - sqrt(mpf("0.6"))) <= answer.ended.error + 1e-15
+        time = sqrt(mpf("0.2") / mpf(Fraction(acceleration).numerator) * Fraction(acceleration).denominator)
+        assert abs(answer.ended.time - time) <= answer.ended.error + 1e-15
+
+
+@pytest.mark.parametrize("angle", ["0.3", "acos(4/5)", "1.2"])
+def test_a_sample_at_the_time_of_an_event_is_that_after_it(angle: str) -> None:
+    """A pendulum against a wall at its lowest place: times of events are no doubles, and rounded either way."""
+    bob = {"mass": 2, "at": [f"sin({angle})", f"-cos({angle})"]}
+    rod = {"kind": "rod", "a": "bob", "b": [0, 0]}
+    wall = {
+        "kind": "contact",
+        "name": "wall",
+        "place": "bob",
+        "on": {"at": [0, 0], "slope": {"degrees": -90}},
+        "restitution": "1/2",
+    }
+    scene = read({"gravity": [0, -10], "bodies": {"bob": bob}, "connections": [rod, wall]})
+    times = [event.time for event in solve_scene(scene, [3.0]).events]
+    outputs = ["trajectory", "energy-in-time", "work-in-time"]
+    columns = solve_scene(scene, sorted([0.0, *times, 3.0]), outputs).trajectory.columns
+    assert len(times) >= 2
+    assert all(columns["bob.velocity"].values[1:-1, 0] > 0.0)
+    start = columns["energy.kinetic"].values[0] + columns["energy.potential"].values[0]
+    left = columns["energy.kinetic"].values + columns["energy.potential"].values - columns["wall.impacts.work"].values
+    assert np.max(np.abs(left - start)) < 1e-12
 
 
 @pytest.mark.parametrize("end", [1.0, 3.0])
