@@ -1,7 +1,7 @@
 """Any other question, planned: what it would be answered with, at which cost and error.
 
 The request is run. A plan that has used its slice of processor time is ended and made again from less: from the request
-at its first time alone, then without running it (`PostRoute.in_short`).
+at few of its times, then without running it (`PostRoute.in_short`).
 """
 
 from __future__ import annotations
@@ -16,21 +16,23 @@ from pydantic import Field
 from core.errors import BudgetExceeded, MechanicsError
 from core.systems.budget import Budget
 from core.systems.methods import Method
+from service.execution.cost_model import ends_of, in_closed_form
 from service.execution.cost_model import evaluations as evaluations_of
-from service.execution.cost_model import in_closed_form
 from service.execution.request_handler import signed
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_stream import composed
 from service.routes.described_answer import ScenePart
-from service.routing import Answer, ExpectedDuration, PostRoute
+from service.routing import Answer, ExpectedDuration, PostRoute, never
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
 
 WITHIN = "/request"
 
 WITHIN_SLICE = ExpectedDuration("immediate", "it was answered within 20 ms of processor time")
+
+AT_ENDS = "it was not answered within 20 ms of processor time, but at the ends of its times, and samples are counted"
 
 
 class PlanRequest(Request):
@@ -93,7 +95,8 @@ class PlanAnswer(Envelope):
 
     path: str = Field(description="As in the request.")
     answerable: bool | None = Field(
-        description="Whether the request would be answered; null where that is known only by running it to its end."
+        description="Whether the request would be answered; null where that is known only by running it to its end. "
+        "A closed form that is answered at the ends of its times is answered."
     )
     duration: Duration | None = Field(
         description="immediate: within 20 ms of processor time; seconds: longer, up to the deadline of a request, at "
@@ -147,7 +150,7 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
         description="Always answered with 200: what the request would be refused for stands under `errors`. The "
         "request is run for at most 20 ms of processor time; how long one takes that is not answered by then, and "
         "whether it is answered, is known only by running it.",
-        in_short=(partial(plan, _run_at_start), partial(plan, _unrun)),
+        in_short=(partial(plan, _run_at_ends), partial(plan, _unrun)),
     )
 
 
@@ -170,18 +173,27 @@ def _run(route: PostRoute, request: Any, budget: Budget) -> Answer:
     return plan | {"answerable": True, "accuracy": _stated(found), "warnings": warnings}
 
 
-def _run_at_start(route: PostRoute, request: Any, budget: Budget) -> Answer:
-    """Plan a question by the answer at its first time alone, where it has one."""
+def _run_at_ends(route: PostRoute, request: Any, budget: Budget) -> Answer:
+    """Plan a question by the answer at few of its times, where it has any.
+
+    Where work grows with counts that the question states, the answer at the ends of its times decides whether there is
+    one. Elsewhere a motion has to be followed to its end for that: the model is known at the first time alone.
+    """
     times = getattr(request, "times", None)
     if times is None:
         return _unrun(route, request, budget)
-    first = times[0] if isinstance(times, list) else times.start
+    counted = route.small is not never and in_closed_form(getattr(request, "method", None))
+    ends = ends_of(times)
+    few = sorted({min(ends), max(ends)}) if counted else ends[:1]
     try:
-        found = route.handle(request.model_copy(update={"times": [first]}), budget)
+        found = route.handle(request.model_copy(update={"times": few}), budget)
     except MechanicsError:
+        if counted:
+            raise
         # The question as a whole may be answered.
         return _unrun(route, request, budget)
-    return _plan(request, found, _evaluations(request, budget)) | route.duration._asdict()
+    plan = _plan(request, found, _evaluations(request, budget)) | route.duration._asdict()
+    return plan | ({"answerable": True, "why": AT_ENDS} if counted else {})
 
 
 def _unrun(route: PostRoute, request: Any, budget: Budget) -> Answer:

@@ -173,6 +173,17 @@ def test_a_plan_that_is_made_without_an_answer_states_what_is_counted() -> None:
         assert (plan["model"] and plan["model"]["name"]) == model
 
 
+def test_where_samples_are_counted_the_ends_of_the_times_decide() -> None:
+    request = FREE | {"times": {"start": 0.0, "stop": 1e4, "count": 10**6}}
+    plan = planned_in_short(PATH, request, 1)
+    assert (plan["answerable"], plan["duration"], plan["cost"]["samples"]) == (True, "seconds", 10**6)
+    assert (plan["model"]["name"], plan["method"]) == ("torque-free rigid body", {"kind": "closed-form"})
+    far = planned_in_short(PATH, request | {"times": {"start": 0.0, "stop": 1e300, "count": 10**6}}, 1)
+    assert (far["answerable"], far["errors"][0]["code"]) == (False, "accuracy-unreachable")
+    # Without a run, that is not known.
+    assert planned_in_short(PATH, request, 2)["answerable"] is None
+
+
 @pytest.mark.parametrize("attempt", [1, 2])
 def test_whatever_is_not_run_is_refused_for_what_it_states(attempt: int) -> None:
     for request in (FREE | {"unknown": 1}, FREE | {"method": {"kind": "explicit-euler", "step": 1e-9}}):
