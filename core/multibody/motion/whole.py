@@ -309,6 +309,10 @@ class Whole:
             raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
         return acceleration, found
 
+    def turns_with(self, force: Force) -> int | None:
+        """Return the row of the push with which a force turns; None where its direction stays."""
+        return None
+
     def force(self, force: Force, q: Floats, v: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
         """Return a force at every state, and the sum of the magnitudes of its terms, each of shape (t,)."""
         total, size = values(force.of_state, q)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from core.multibody.algebra.polynomials import Ball
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball
 from core.multibody.contacts.complementarity import Decided
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
@@ -92,8 +92,13 @@ class Phase:
 
     @cached_property
     def determined(self) -> list[bool]:
-        """Which of the forces the scene determines."""
-        return [force.value is not None for force in self.start_forces[1]]
+        """Which of the forces the scene determines; friction that turns is zero along an axis at the start alone."""
+        multipliers, forces = self.start_forces
+        pushes = [self.models[0].whole.turns_with(force) for force in self.models[0].described.measures.forces]
+        return [
+            force.value is not None and (row is None or not multipliers.elimination.reduced({row: ONE}, ZERO)[0])
+            for force, row in zip(forces, pushes, strict=True)
+        ]
 
     @property
     def turning(self) -> bool:

@@ -219,6 +219,12 @@ class TurningWhole(Whole):
                 found[s, r] = float(solved[count + k].mid())
         return gains, found
 
+    def turns_with(self, force: Force) -> int | None:
+        """Return the row of the push with which a force turns; None where its direction stays."""
+        one, axis, row = self.turning.get(force.name, (None, 0, None))
+        flat = one is None or one.tangents is None or all(is_zero(tangent[axis]) for tangent in one.tangents)
+        return None if flat else row
+
     def force(self, force: Force, q: Floats, v: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
         """Return a force at every state, and the sum of the magnitudes of its terms, each of shape (t,)."""
         if force.name not in self.turning:

@@ -39,9 +39,11 @@ def decide(mechanism: Mechanism, state: State, touching: Sequence[int], probe: P
     active = [i for i in touching if abs(rates[i]) <= still]
     rows = mechanism.rows(state, (), mechanism.rough(active))
     choices = {i: _choices(mechanism.one_sided[i].slips, rows.rates[rows.of("slip", i)], still) for i in active}
-    # Groups that do not push one another are decided apart: what is still undecided stays closed, if it can.
+    # Groups that do not push one another are decided apart: what is still undecided stays closed, if it can. What one
+    # does may show by the motion of another alone.
     modes = [choices[i][0] if i in choices else OPEN for i in range(len(mechanism.one_sided))]
-    for group in clusters(mechanism, state, active) if active else ():
+    groups = clusters(mechanism, state, active) if active else []
+    for group in groups if len(groups) < 2 else groups * 2:
         modes = _Lasting(mechanism, state, group, probe).only(modes, choices)[0].modes
     return Phase(mechanism, modes)
 

@@ -17,6 +17,8 @@ ALIKE = 1e-8
 """Share of the rates within which those after two orders are the same."""
 CLOSES = 1e-14
 """Share of the rates at which a gap closes in a sequence of impacts."""
+GAIN = 1e-12
+"""Share of the kinetic energy that an impact may add by rounding."""
 IN_TURN = 400
 """Impacts one after another before an order is given up."""
 ORDERED = 4
@@ -119,7 +121,7 @@ def impact(mechanism: Mechanism, state: State, restitution: Mapping[int, float])
             found = impacts.of_group(group, rates)
             rates, pushes = found.rates, {**pushes, **found.pushes}
     mass = mechanism.inertia(state)
-    gained = rates @ mass @ rates > state.rates @ mass @ state.rates * (1 + NEARLY)
+    gained = (rates - state.rates) @ mass @ (rates + state.rates) > GAIN * (state.rates @ mass @ state.rates)
     if gained and not mechanism.rows(state).driven.any():
         raise Undecided("energy-gain", [mechanism.one_sided[i].name for i in pushes])
     return Impact(rates, pushes)

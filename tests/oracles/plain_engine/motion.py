@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -181,6 +182,13 @@ class _Run:
             self.motion.states[self.now] = self.state
             self.motion.forces[self.now] = forces_of(phase, self.state)
 
+    def _forced(self, phase: Phase, state: State) -> dict[Key, float]:
+        if not phase.closed:
+            return {}
+        solution, fastest = phase.solve(state), max(self.fastest, 1e-9)
+        slips = {("slip", i): float(phase.along[i] @ slip) / fastest for i, slip in solution.slips.items()}
+        return phase.conditions(solution, phase.closed) | slips
+
     def _advance(self, phase: Phase, end: float) -> bool:
         """Go to the next event; return whether there is one."""
 
@@ -189,11 +197,10 @@ class _Run:
             gaps, _ = self.mechanism.gap_rates(state)
             opened = {i for i in range(len(gaps)) if i not in phase.closed}
             found = {("gap", i): float(gaps[i]) for i in opened} | of_chains(phase, state)
-            if phase.closed:
-                solution = phase.solve(state)
-                found |= phase.conditions(solution, phase.closed)
-                fastest = max(self.fastest, 1e-9)
-                found |= {("slip", i): float(phase.along[i] @ slip) / fastest for i, slip in solution.slips.items()}
+            found["rank", -1] = phase.independence(state)
+            # Where connections lose their rank there may be no forces.
+            with suppress(Inconsistent):
+                found |= self._forced(phase, state)
             slack = {self.mechanism.one_sided[i].name for i in opened}
             spans = enumerate(self.mechanism.spans(state))
             return found | {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
@@ -206,6 +213,9 @@ class _Run:
                 continue
             self.now, self.state = found.time, found.state
             kind, i = found.key
+            if kind == "rank":
+                self.motion.ended = Event("singular", "", self.now)
+                return False
             if found.grazes:
                 raise Undecided("grazing-contact", [self.mechanism.one_sided[i].name])
             if kind in ("lift-off", "end-of-chain"):

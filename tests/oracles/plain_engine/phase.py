@@ -99,10 +99,18 @@ class Phase:
         self.sliding = [i for i in self.closed if modes[i].kind is Kind.SLIDE]
         # In space what slides turns the direction of its friction with it; from rest it begins along this one.
         self.along = {i: np.array(modes[i].along) for i in self.sliding}
+        self.rank: int | None = None
 
     def rows(self, state: State) -> Rows:
         """Return the rows of what holds, of what is closed, and of all slips."""
         return self.mechanism.rows(state, self.closed, [*self.sticking, *self.sliding])
+
+    def independence(self, state: State) -> float:
+        """Return the product of the squared singular values of what holds; it is zero where that loses its rank."""
+        lines = self.mechanism.rows(state, self.closed).lines
+        values = np.linalg.svd(lines / sizes_of(lines)[:, None], compute_uv=False)
+        self.rank = int((values > NO_ROW).sum()) if self.rank is None else self.rank
+        return float(np.prod(values[: self.rank] ** 2))
 
     def direction(self, i: int, slip: Floats) -> Floats:
         """Return the direction in which something slides."""

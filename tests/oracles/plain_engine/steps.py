@@ -32,6 +32,8 @@ relative to those of the scene, are known to some 1e-12."""
 NO_FORCE = 1e-10
 GRAZES = 1e-9
 """Share of a gap's own size to which it is known whether it reaches zero where it turns back."""
+TOUCHES = {"gap": GRAZES, "rank": 1e-12}
+"""The same of what ends a motion there; a product of squares is zero to the square of what places are known to."""
 
 Figures = Callable[[State], dict[Key, float]]
 """What has to stay at or above zero, by kind and number."""
@@ -139,15 +141,17 @@ class Stepper:
         if not losses:
             return None
         time, grazes, key = min(losses)
+        if grazes:
+            return Crossing(key, time, seen(time), grazes)
         begun, origin = solver.t_old, self.coordinates.unpack(solver.y_old)
         earlier = max(time - 1e-4 * solver.step_size, begun + 0.5 * (time - begun))
-        if not grazes and time > earlier:
+        if time > earlier:
             # The zero of states that are reached in steps, and not by interpolation.
             slope = (figures(seen(time))[key] - figures(seen(earlier))[key]) / (time - earlier)
             for _ in range(2 if slope < 0.0 else 0):
                 change = figures(self.to(origin, begun, time))[key] / slope
                 time -= change if abs(change) <= 0.05 * solver.step_size else 0.0
-        return Crossing(key, max(time, begun), self.to(origin, begun, max(time, begun)), grazes)
+        return Crossing(key, max(time, begun), self.to(origin, begun, max(time, begun)))
 
 
 def _between(dense: list[Callable[[float], Floats]], begun: float, coordinates: Coordinates, time: float) -> State:
@@ -166,14 +170,14 @@ def _first_loss(
                 return float(brentq(figure, times[k - 1], times[k], xtol=1e-15)), False
             return _from_zero(figure, times[k - 1], times[k]), False
         if k + 1 < len(times) and nothing < values[k] < values[k - 1] and values[k] <= values[k + 1]:
-            if _parabola(times[k - 1 : k + 2], values[k - 1 : k + 2]) > 0.3 * values[k]:
+            if kind != "rank" and _parabola(times[k - 1 : k + 2], values[k - 1 : k + 2]) > 0.3 * values[k]:
                 continue
             a, c = times[k - 1], times[k + 1]
             found = minimize_scalar(figure, bounds=(a, c), method="bounded", options={"xatol": 1e-9 * (c - a)})
             size = max(values[k - 1], values[k + 1])
             if found.fun < -max(nothing, GRAZES * size):
                 return float(brentq(figure, a, found.x, xtol=1e-15)), False
-            if kind == "gap" and found.fun < GRAZES * size:
+            if found.fun < TOUCHES.get(kind, 0.0) * size:
                 return float(found.x), True
     return None
 

@@ -250,3 +250,18 @@ def test_directions_of_onsets_that_depend_on_one_another_converge_or_are_none() 
     assert directions_together([(arb(0), arb(0))], after) == []
     assert directions_together([(arb(1), arb(0))], lambda _: None) == []
     assert directions_together([(arb(1), arb(0))], lambda ways: [(-ways[0][1], ways[0][0])]) is None
+
+
+def test_friction_that_turns_is_shared_as_openly_as_the_pushes() -> None:
+    """Four legs share the weight in many ways: across the first direction their friction is zero at the start alone."""
+    legs = {f"f{i}": [x, y, -0.5] for i, (x, y) in enumerate(((0.5, 0.3), (-0.5, 0.3), (-0.5, -0.3), (0.5, -0.3)))}
+    table = {"mass": 10, "moments": [1, 1.5, 2], "at": [0, 0, 0.5], "places": legs, "velocity": [1, 0, 0]}
+    on = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    feet = [{"kind": "contact", "name": leg, "place": f"table.{leg}", "on": on, "friction": 0.1} for leg in legs]
+    pull = {"kind": "force", "place": "table", "force": [0, 3, 0]}
+    bodies = {"table": {**table, "angular_velocity": [0, 0, 0]}}
+    scene = {"gravity": [0, 0, -10], "bodies": bodies, "connections": [*feet, pull]}
+    answer = solve_scene(read(scene), [0.3], ("trajectory", "forces-in-time"))
+    assert answer.trajectory is not None
+    assert column(answer, "table.velocity").values[0, 1] > 0.01
+    assert not any(f"{leg}.friction.{axis}" in answer.trajectory.columns for leg in legs for axis in "xy")
