@@ -38,7 +38,8 @@ def entry(numbers: Mapping[Any, Ball], key: Any) -> Ball:
 
 def is_zero(ball: Ball) -> bool:
     """Return whether a ball cannot be told from zero."""
-    return 0 in ball
+    # The zero of balls spares its conversion.
+    return ZERO in ball
 
 
 def constant(value: Ball) -> Poly:
@@ -59,7 +60,7 @@ def combined(*parts: tuple[Ball, Poly]) -> Poly:
             term = factor * value
             old = total.get(key)
             total[key] = term if old is None else old + term
-    return {key: value for key, value in total.items() if 0 not in value}
+    return {key: value for key, value in total.items() if ZERO not in value}
 
 
 def difference(first: Poly, second: Poly) -> Poly:
@@ -78,7 +79,7 @@ def product(first: Poly, second: Poly) -> Poly:
             assert len(key) <= 2, "a product of degree three is no part of a table"
             old = total.get(key)
             total[key] = x * y if old is None else old + x * y
-    return {key: value for key, value in total.items() if 0 not in value}
+    return {key: value for key, value in total.items() if ZERO not in value}
 
 
 def dot(first: Sequence[Poly], second: Sequence[Poly]) -> Poly:
@@ -146,7 +147,7 @@ def substituted(poly: Poly, expressions: Sequence[Poly]) -> Poly:
                 for b, y in expressions[key[1]].items():
                     pair = a + b
                     _add(total, (pair[1], pair[0]) if len(pair) == 2 and pair[0] > pair[1] else pair, scaled * y)
-    return {key: value for key, value in total.items() if 0 not in value}
+    return {key: value for key, value in total.items() if ZERO not in value}
 
 
 def variables(polys: Iterable[Poly]) -> set[int]:

@@ -105,7 +105,7 @@ def _along(line: LinearForm, expressions: Sequence[Poly]) -> LinearForm:
                 into = found.setdefault(key[0], {})
                 for monomial, factor in changed.items():
                     into[monomial] = into.get(monomial, ZERO) + value * factor
-    cleaned = {j: {key: x for key, x in poly.items() if 0 not in x} for j, poly in found.items()}
+    cleaned = {j: {key: x for key, x in poly.items() if ZERO not in x} for j, poly in found.items()}
     return {j: poly for j, poly in cleaned.items() if poly}
 
 
@@ -272,7 +272,7 @@ class Table:
                         new.add_gyration(a, b, c, value * x * y * z)
         for part in (new.mass, new.load, new.stiffness, new.damping, new.gyration):
             clean: dict[object, Ball] = part  # type: ignore[assignment]
-            for key in [key for key, value in clean.items() if 0 in value]:
+            for key in [key for key, value in clean.items() if ZERO in value]:
                 del clean[key]
         new.rows = [row.along(expressions) for row in self.rows]
         new.laws = [law for law in (own.along(expressions) for own in self.laws) if law.push]
