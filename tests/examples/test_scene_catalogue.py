@@ -72,8 +72,6 @@ def test_its_model_is_found_and_four_times_the_mass_under_other_names_moves_alik
             # Attraction grows with the square of the masses.
             stiffer["constant"] = f"({fields['constant']})/4"
         other["connections"].append({"name": f"{fields['kind']}-{i + 1}"} | stiffer)
-    if isinstance(question.get("assemble"), dict):
-        other["assemble"] = renamed(question["assemble"])
     second = solved(other)
     assert second.model.name == first.model.name
     for column, values in first.trajectory.columns.items():

@@ -15,7 +15,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.balls import precision
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, SlackAtStart
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, is_zero, size
 from core.multibody.assembly.described_bodies import (
@@ -237,7 +237,13 @@ def _moving(scene: Scene, numerals: Numerals | None, extent: float) -> Scene:
     """Return a scene with the nearest velocities that its connections allow."""
     if all(body.velocity is None and body.angular_velocity is None for body in scene.bodies.values()):
         return scene
-    found = described(scene, None if numerals is None else numerals.without_places(), one_sided=True, sketch=True)
+    written = None if numerals is None else numerals.without_places()
+    one_sided = any(connection.one_sided for connection in scene.connections)
+    try:
+        # Strings that are taut hold, as in the motion of a scene that nothing else is one-sided in.
+        found = described(scene, written, one_sided=one_sided, sketch=True)
+    except SlackAtStart:
+        found = described(scene, written, one_sided=True, sketch=True)
     coordinates, table = found.measures.coordinates, found.measures.table
     metric = metric_of(table, list(coordinates.frames.values()), arb(extent))
     rates = nearest_rates(table, coordinates.given, metric)
