@@ -11,7 +11,7 @@ import numpy as np
 from core.arrays import Floats
 from core.errors import BudgetExceeded
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
-from core.multibody.algebra.polynomials import Ball, Poly
+from core.multibody.algebra.polynomials import ZERO, Ball, Poly
 from core.multibody.equations.packed import pair
 from core.multibody.model_answer import ModeErrors, SmallMotion
 from core.multibody.table.table import Table
@@ -245,3 +245,7 @@ class Rest(Motion):
     def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
         """Return the start at every time."""
         return [BallState(self.table.q, self.table.v)] * len(times)
+
+    def angles_turned(self, times: Sequence[Ball]) -> list[Ball]:
+        """Return zero: a rod that hangs at rest has a direction that does not turn."""
+        return [ZERO] * len(times)

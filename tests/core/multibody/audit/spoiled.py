@@ -20,7 +20,7 @@ from core.multibody.language.scene import Scene
 from core.systems.trajectory import Column
 
 FOLDER = Path(__file__).parents[4] / "examples" / "scenes"
-DESCRIBED = ("gravity", "bodies", "connections", "let", "numbers")
+DESCRIBED = ("gravity", "bodies", "connections", "let", "numbers", "assemble")
 OUTPUTS = ("accelerations", "forces", "energy", "trajectory", "forces-in-time")
 SLOW = {"ball-in-bowl", "foucault-pendulum", "painleve-chalk"}
 """Motions that take long, and one that is none."""

@@ -23,11 +23,13 @@ from core.multibody.solve import solve_scene
 FOLDER = Path(__file__).parents[4] / "examples" / "scenes"
 SLOW = {"ball-in-bowl", "foucault-pendulum"}
 """Their motion takes longer than this test may."""
+SKETCHED = {"sketched-linkage"}
+"""Its places are found first."""
 UNDECIDED = {"painleve-chalk"}
 """Without a motion."""
 TOPS = {"dumbbell-dropped-in-space", "lagrange-top", "precessing-top", "sleeping-top"}
 """Of symmetric tops the axis alone is answered."""
-NAMES = sorted(path.stem for path in FOLDER.glob("*.json") if path.stem not in SLOW | UNDECIDED)
+NAMES = sorted(path.stem for path in FOLDER.glob("*.json") if path.stem not in SLOW | SKETCHED | UNDECIDED)
 DESCRIBED = ("gravity", "bodies", "connections", "let", "numbers")
 
 
