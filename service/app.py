@@ -24,7 +24,7 @@ from service.execution.request_handler import RequestHandler
 from service.execution.supervision import end_with_supervisor, remove_temporary_files
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
-from service.http.target import host_of, is_allowed, path_of_target
+from service.http.target import host_of, is_allowed, of_target
 from service.observability import traces
 from service.observability.logs import LOG, configure
 from service.observability.metrics import Metrics
@@ -109,8 +109,12 @@ class Service(FastAPI):
         if root := scope.get("root_path"):
             path = path.removeprefix(root)
         if not path.startswith("/"):
-            path = path_of_target(path)
+            host, path = of_target(path)
             scope = {**scope, "path": (root or "") + path, "raw_path": path.encode()}
+            if host:
+                # It takes the place of the Host header (RFC 9112, 3.2.2).
+                others = [header for header in scope["headers"] if header[0] != b"host"]
+                scope["headers"] = [(b"host", host.encode()), *others]
         handler = self._handlers.get((scope["method"], path)) or super().__call__
         if self._hosts and not is_allowed(host_of(scope["headers"]), self._hosts):
             handler = self._unknown_host

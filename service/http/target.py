@@ -6,13 +6,13 @@ import re
 from collections.abc import Iterable
 from ipaddress import ip_address
 
-_ABSOLUTE = re.compile(r"https?://[^/?#]+", re.IGNORECASE)
+_ABSOLUTE = re.compile(r"https?://([^/?#]+)", re.IGNORECASE)
 
 
-def path_of_target(target: str) -> str:
-    """Return the path in a target in absolute form, a URL (RFC 9112, 3.2.2); any other target unchanged."""
-    authority = _ABSOLUTE.match(target)
-    return target if authority is None else target[authority.end() :] or "/"
+def of_target(target: str) -> tuple[str, str]:
+    """Return host and path of a target in absolute form (RFC 9112, 3.2.2); of any other, no host and the target."""
+    found = _ABSOLUTE.match(target)
+    return ("", target) if found is None else (found[1], target[found.end() :] or "/")
 
 
 def host_of(headers: Iterable[tuple[bytes, bytes]]) -> str:

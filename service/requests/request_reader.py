@@ -19,7 +19,7 @@ import orjson
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
-from service.problems import Refusal, headline
+from service.problems import Fault, Refusal, headline
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 from service.requests.error_messages import Wording
 from service.requests.layout import Layout
@@ -105,7 +105,9 @@ class Reader(Generic[Q]):
         found = error.errors(include_url=False, include_input=False)
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
-            return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
+            detail = str(found[0]["ctx"]["error"])
+            fault = Fault("", f"must be JSON: {detail}", "see RFC 8259 for what may stand there")
+            return Refusal("invalid-json", detail, faults=[fault])
         faults, codes = self._wording.faults(found, cache(partial(_parsed, document)))
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"
         return Refusal(code, headline(faults), faults=faults)

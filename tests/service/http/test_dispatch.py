@@ -212,6 +212,15 @@ async def test_targets_in_absolute_form_lead_to_their_path(target: str, status: 
     assert sent[0]["status"] == status
 
 
+@pytest.mark.parametrize(("host", "status"), [("polhode.example.org", 200), ("attacker.net", 421)])
+async def test_the_host_of_a_target_in_absolute_form_takes_the_place_of_the_header(host: str, status: int) -> None:
+    messages: list[dict[str, Any]] = []
+    named = toy_service(allowed_hosts="polhode.example.org")
+    other = {"polhode.example.org": "attacker.net", "attacker.net": "polhode.example.org"}[host]
+    await named(scope("GET", f"http://{host}:80/healthz", {"host": other}), receiving(b""), sending(messages))
+    assert messages[0]["status"] == status
+
+
 @pytest.mark.parametrize(
     ("host", "status"),
     [
