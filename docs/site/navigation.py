@@ -14,6 +14,9 @@ PAGES_ELSEWHERE = {
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
     "clients/python/README.md": "python-client.md",
+    "clients/lms/prairielearn/README.md": "prairielearn.md",
+    "clients/lms/gradescope/README.md": "gradescope.md",
+    "clients/lms/moodle/README.md": "moodle.md",
 }
 """Pages outside of docs/, and where they are on the site."""
 
@@ -32,6 +35,9 @@ def navigation() -> list[Any]:
         {"See a motion in the browser": "pages.md"},
         {"Describe a scene": "describing-scenes.md"},
         {"Grade homework": "grading.md"},
+        {"Grade in PrairieLearn": "prairielearn.md"},
+        {"Grade in Gradescope": "gradescope.md"},
+        {"Grade in Moodle": "moodle.md"},
         {"A published solution with mistakes": "homework.md"},
         {"Study many variations": "studies.md"},
         {"Read and choose the accuracy": "accuracy.md"},

@@ -11,6 +11,7 @@ import contextlib
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import urllib.request
@@ -30,9 +31,11 @@ SHOWN = ("text", "html", "yaml")
 
 REASONS = ("installs packages", "needs Docker", "needs a cluster", "runs for minutes")
 PAGES = [page for page in pages().values() if any(blocks(page.read_text()))]
-LINKED = ("docs", "examples")
-"""Folders that blocks name by their paths. Modules are imported from where they are: compiled kernels are cached by
-the path of their source."""
+LINKED = ("clients", "core", "docs", "examples", "service")
+"""Folders that somebody who has cloned the repository finds where commands run."""
+
+ACTIVATED = "source .venv/bin/activate"
+"""What pages say before commands that need the environment: its programs come first, and nothing else is set."""
 
 
 def contains(answer: Any, shown: Any) -> bool:
@@ -79,9 +82,8 @@ class Page:
             assert self.printed == block.code
 
     def shell(self, code: str) -> str:
-        environment = os.environ | {
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | {
             "POLHODE_PORT": self.service.rpartition(":")[2],
-            "PYTHONPATH": str(ROOT),
             "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
         }
         command = ["bash", "-eo", "pipefail", "-c", code]
@@ -119,6 +121,13 @@ def test_every_block_is_run_or_says_why_not(page: Path) -> None:
         assert block.language in RUN + SHOWN, block.code
         assert block.untested is None or block.untested in REASONS
         assert "not tested" not in block.code or block.untested
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_a_page_says_where_its_commands_run(page: Path) -> None:
+    text = page.read_text()
+    commands = [block.code for block in blocks(text) if block.language == "sh" and block.untested is None]
+    assert ACTIVATED in text or not any(re.search(r"(?m)^python ", code) for code in commands)
 
 
 def test_the_request_of_the_readme_is_that_of_the_example() -> None:
