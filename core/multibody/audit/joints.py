@@ -88,14 +88,16 @@ class Coincidence(Definition):
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
         rates = self.a.velocity(placement, motion) - self.b.velocity(placement, motion)
-        return {f"{self.name}.{axis}": rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
+        found = {f"{self.name}.{axis}": rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
+        return found if self.axis is None else found | _moments(self.name, self.a.body, self.b.body, motion)
 
-    def unanswered(self, placement: Placement, motion: Motion) -> tuple[Numbers, ...]:
-        """See `Definition.unanswered`."""
-        if self.axis is None:
-            return ()
-        rates = rate(self._tilt, placement, motion)
-        return tuple(rates[..., i] for i in range(3))
+    def holding(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.holding`: no moment about the axis."""
+        found = dict(self.efforts(placement, motion))
+        if self.axis is not None:
+            rates = rate(self._tilt, placement, motion)
+            found |= {f"{self.name}.moment.{axis}": rates[..., i] for i, axis in enumerate(AXES)}
+        return found
 
     def _tilt(self, placement: Placement) -> Numbers:
         assert self.axis is not None
@@ -175,11 +177,8 @@ class WeldDefinition(Definition):
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
         rates = rate(self.apart, placement, motion)
-        return {f"{self.name}.{axis}": rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
-
-    def unanswered(self, placement: Placement, motion: Motion) -> tuple[Numbers, ...]:
-        """See `Definition.unanswered`."""
-        return _turns_together(self.a.body, self.b.body, self.attitude, placement, motion)
+        found = {f"{self.name}.{axis}": rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
+        return found if self.attitude is None else found | _moments(self.name, self.a.body, self.b.body, motion)
 
 
 @dataclass(frozen=True)
@@ -218,23 +217,23 @@ class SliderDefinition(Definition):
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
         rates = rate(self.off, placement, motion)
-        if len(self.normals) == 1:
-            return {f"{self.name}.normal": rates[..., 0]}
-        return {f"{self.name}.normal.{i + 1}": rates[..., i] for i in range(len(self.normals))}
-
-    def unanswered(self, placement: Placement, motion: Motion) -> tuple[Numbers, ...]:
-        """See `Definition.unanswered`."""
-        return _turns_together(self.a.body, self.b.body, self.attitude, placement, motion)
+        found = {f"{self.name}.normal": rates[..., 0]}
+        if len(self.normals) > 1:
+            found = {f"{self.name}.normal.{i + 1}": rates[..., i] for i in range(len(self.normals))}
+        return found if self.attitude is None else found | _moments(self.name, self.a.body, self.b.body, motion)
 
 
-def _turns_together(
-    a: str | None, b: str | None, attitude: Numbers | None, placement: Placement, motion: Motion
-) -> tuple[Numbers, ...]:
-    """Return the relative angular velocity of two bodies, as far as it is held."""
-    if attitude is None:
-        return ()
-    rates = rate(lambda where: attitude_to(where, a, b), placement, motion)
-    return (rates,) if attitude.shape == () else tuple(rates[..., i] for i in range(9))
+def _moments(name: str, a: str | None, b: str | None, motion: Motion) -> dict[str, Numbers]:
+    """Return the power of one unit of each component of the moment on body `a`, in space in the axes of space."""
+    spins = [motion[body].spin for body in (a, b) if body is not None and body in motion]
+    known = next(spin for spin in spins if spin is not None)
+    first, second = (np.zeros_like(known) if body is None else motion[body].spin for body in (a, b))
+    assert first is not None, "a body whose attitude is held turns"
+    assert second is not None, "a body whose attitude is held turns"
+    relative = first - second
+    if relative.shape[-1:] == (3,):
+        return {f"{name}.moment.{axis}": relative[..., i] for i, axis in enumerate(AXES)}
+    return {f"{name}.moment": relative}
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ def pin(connection: Pin, measures: Measures, name: str, path: Path) -> None:
     for body in (a.body, b.body):
         if body is not None and frames[body].axes is None:
             raise InvalidParameter((*path, "axis"), f'hold bodies that have moments, unlike "{body}"')
-    measures.aligned(name, a.body, b.body, axis, path)
+    measures.aligned(name, a.body, b.body, [axis], path)
 
 
 @add_rows.register

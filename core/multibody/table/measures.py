@@ -144,12 +144,26 @@ class Measures:
             self._inverses[length] = index
         return self._inverses[length]
 
-    def aligned(self, name: str, a: str | None, b: str | None, components: Sequence[Ball], path: Path) -> list[int]:
-        """Hold a direction of body `a`, given in space at the start, in body `b`."""
-        first = self.coordinates.vector_of(a, self.in_body(a, components), path)
-        second = self.coordinates.vector_of(b, self.in_body(b, components), path)
-        found = [difference(x, y) for x, y in zip(first, second, strict=True)]
-        return [self.hold(name, measure) for measure in found if measure]
+    def aligned(
+        self, name: str, a: str | None, b: str | None, directions: Sequence[Sequence[Ball]], path: Path
+    ) -> None:
+        """Hold directions of body `a`, given in space at the start, in body `b`; the moment is that on `a`.
+
+        The multipliers of a direction e are a vector, whose product e x lambda is their moment.
+        """
+        moment: list[list[tuple[int, Poly]]] = [[] for _ in range(1 if self.dimension == 2 else 3)]
+        for components in directions:
+            first = self.coordinates.vector_of(a, self.in_body(a, components), path)
+            second = self.coordinates.vector_of(b, self.in_body(b, components), path)
+            measures = [difference(x, y) for x, y in zip(first, second, strict=True)]
+            rows = [self.hold(name, measure) if measure else None for measure in measures]
+            for i, terms in enumerate(moment):
+                j, k = (0, 1) if self.dimension == 2 else ((i + 1) % 3, (i + 2) % 3)
+                for sign, arm, row in ((ONE, first[j], rows[k]), (-ONE, first[k], rows[j])):
+                    if row is not None and arm:
+                        terms.append((row, combined((sign, arm))))
+        for axis, terms in zip(("",) if self.dimension == 2 else (".x", ".y", ".z"), moment, strict=True):
+            self.force(f"{name}.moment{axis}", terms, "N m")
 
     def in_body(self, body: str | None, components: Sequence[Ball]) -> list[Ball]:
         """Return the body components of a vector that is given in space at the start."""
@@ -169,14 +183,12 @@ class Measures:
             turns = [None if point.body is None else frames[point.body].turn for point in (a, b)]
             if turns[0] is not None and turns[1] is not None:
                 apart = difference(coordinate(turns[0]), coordinate(turns[1]))
-                self.hold(name, difference(apart, constant(evaluated(apart, self.table.q))))
+                row = self.hold(name, difference(apart, constant(evaluated(apart, self.table.q))))
+                self.force(f"{name}.moment", [(row, constant(ONE))], "N m")
             # A particle has no orientation that could be held or hold.
             return
-        if a.body is None:
-            a, b = b, a
         unit = [[ONE if i == j else ONE - ONE for j in range(self.dimension)] for i in range(self.dimension)]
-        for components in unit[: 1 if self.dimension == 2 else 3]:
-            self.aligned(name, a.body, b.body, components, path)
+        self.aligned(name, a.body, b.body, unit[: 1 if self.dimension == 2 else 3], path)
 
     def slide(self, name: str, a: Point, b: Point, along: Sequence[Ball], path: Path) -> None:
         """Hold place `a` on a line through `b`, whose direction is given in the axes of the body of `b`."""
