@@ -15,6 +15,7 @@ from core.errors import AccuracyUnreachable, NotApplicable
 from core.notices import Notice
 from core.rotation.attitude.free_attitude import FreeAttitude
 from core.rotation.free_rotation import FreeRotation
+from core.rotation.motion_check import check_motion
 from core.rotation.self_check import check_rotation
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
@@ -26,6 +27,9 @@ from core.systems.state_motion import HALF_ULP
 from core.systems.trajectory import Trajectory
 
 Output = Literal["time", "angular_velocity", "attitude"]
+_BETWEEN = 0.5 * (5.0**0.5 - 1.0)
+"""Share of the last time about which the motion is held against its equations: it meets no fraction of a period."""
+
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -155,6 +159,16 @@ def sample_rotation(
             stated.error * (stated.largest_norm or 0.0),
             None if turned is None else turned.quaternions,
             0.0 if turned is None else turned.error,
+        )
+        norm = stated.largest_norm or 0.0
+        check_motion(
+            system.tensor,
+            system.angular_velocity,
+            # Apart from the samples, and of those times to which their error belongs.
+            _BETWEEN * float(times[-1]) if len(times) else 0.0,
+            (exact.sample, lambda at: exact.error(at) * norm),
+            None if turned is None else (turned.closed_form.sample, turned.closed_form.error),
+            solved.period,
         )
     tilt = exact.middle_axis_tilt
     least = None if tilt is None else in_range("middle_axis_tilt", tilt.least, notices)
