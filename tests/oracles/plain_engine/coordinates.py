@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class State:
-    """Places and rates of all bodies; places may have leading axes.
+    """Places and rates of all bodies, and when they are there (s); places may have leading axes.
 
     Attributes
     ----------
@@ -31,6 +31,7 @@ class State:
     position: Floats
     turn: Floats
     rates: Floats
+    time: float = 0.0
 
 
 class Coordinates:
@@ -90,6 +91,7 @@ class Coordinates:
                 state.position[..., i, :],
                 rotation[..., i, :, :] if rigid else None,
                 state.turn[..., i] if rigid and self.flat else None,
+                np.array(state.time),
             )
             for i, (name, rigid) in enumerate(zip(self.names, self.rigid, strict=True))
         }
@@ -98,7 +100,7 @@ class Coordinates:
         """Return the state with its places moved by changes, of shape (..., n)."""
         move, angle = self.spread(change)
         turn = state.turn + angle if self.flat else rotations_by(angle) @ state.turn
-        return State(state.position + move, turn, state.rates)
+        return State(state.position + move, turn, state.rates, state.time)
 
     def inertia(self, state: State) -> Floats:
         """Return the mass matrix, shape (n, n)."""
@@ -126,23 +128,23 @@ class Coordinates:
 
     def pack(self, state: State) -> Floats:
         """Return a state as one vector."""
-        return np.concatenate([state.position.ravel(), state.turn.ravel(), state.rates])
+        return np.concatenate([state.position.ravel(), state.turn.ravel(), state.rates, [state.time]])
 
     def unpack(self, vector: Floats) -> State:
         """Return the state that a vector holds, with the rotations that are nearest to its matrices."""
         b, d = len(self.bodies), self.dimension
-        position, turn, rates = np.split(vector, [b * d, len(vector) - self.size])
+        position, turn, rates = np.split(vector[:-1], [b * d, len(vector) - 1 - self.size])
         if not self.flat:
             u, _, vt = np.linalg.svd(turn.reshape(b, 3, 3))
             turn = u @ vt
-        return State(position.reshape(b, d), turn, rates)
+        return State(position.reshape(b, d), turn, rates, float(vector[-1]))
 
     def flow(self, state: State, accelerations: Floats) -> Floats:
         """Return the rate of a packed state."""
         velocity, spin = self.spread(state.rates)
         axes = np.swapaxes(state.turn, -1, -2) if not self.flat else state.turn
         turn = spin if self.flat else np.swapaxes(cross(spin[:, None, :], axes), -1, -2)
-        return self.pack(State(velocity, turn, accelerations))
+        return self.pack(State(velocity, turn, accelerations, 1.0))
 
 
 def rotations_by(vector: Floats) -> Floats:

@@ -523,3 +523,12 @@ def test_twins_meet_their_walls_at_one_instant() -> None:
     quarter = complete(math.sin(math.asin(0.6) / 2) ** 2) / math.sqrt(10)
     near([event.time for event in motion.events], [quarter, quarter])
     near(velocity(motion, 0.6, "a"), [0, 0])
+
+
+def test_a_force_that_swings_with_time_beats_with_the_spring() -> None:
+    """x'' + k x = 2 cos(3 t) from rest: x = 2 (cos(3 t) - cos(w t))/(w^2 - 9), w^2 = k."""
+    spring = {"kind": "spring", "a": "p", "b": [-1, 0], "stiffness": 20}
+    rail = {"kind": "track", "place": "p", "on": {"at": [0, 0]}}
+    push = {"kind": "force", "place": "p", "force": ["2*cos(3*t)", 0]}
+    motion = moved({"p": {"mass": 1, "at": [0, 0]}}, [spring, rail, push], [0.7])
+    near(position(motion, 0.7, "p"), [2 * (math.cos(2.1) - math.cos(0.7 * math.sqrt(20))) / 11, 0])
