@@ -336,8 +336,10 @@ class OnParabola(Definition):
         return {f"{self.name}.{axis}": rates[..., i] for i, axis in enumerate("xy")}
 
     def holding(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
-        """See `Definition.holding`: along the normal of the curve."""
-        return {} if self.vertex.body is not None else {f"{self.name}.x": rate(self.height, placement, motion)}
+        """See `Definition.holding`: along the normal of the curve, of which either component may be answered alone."""
+        if self.vertex.body is not None:
+            return {}
+        return dict.fromkeys((f"{self.name}.x", f"{self.name}.y"), rate(self.height, placement, motion))
 
     def unanswered(self, placement: Placement, motion: Motion) -> tuple[Numbers, ...]:
         """See `Definition.unanswered`."""

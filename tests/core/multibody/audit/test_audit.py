@@ -141,3 +141,13 @@ def test_an_attitude_is_known_beside_one_where_all_places_are_zero() -> None:
     rail = {"kind": "slider", "a": "body", "b": [0, 0, 0], "direction": [1, 0, 0]}
     answer = solve_scene(read({"gravity": [0, 0, -10], "bodies": {"body": body}, "connections": [rail]}), [0.5])
     assert answer.trajectory is not None
+
+
+def test_a_component_that_is_zero_for_every_share_is_answered_alone() -> None:
+    """Two wires hold a bead at their lowest point: across their normal both forces are zero, along it they share."""
+    wires = [{"kind": "track", "name": k, "place": "bead", "on": {"at": [0, 0], "curvature": 1}} for k in ("a", "b")]
+    scene = {"gravity": [0, -10], "bodies": {"bead": {"mass": 1, "at": [0, 0]}}, "connections": wires}
+    answer = solve_scene(read(scene), [0.1, 0.3], ("trajectory", "forces-in-time"))
+    assert answer.trajectory is not None
+    assert "a.x" in answer.trajectory.columns
+    assert "a.y" not in answer.trajectory.columns

@@ -79,7 +79,7 @@ def _by_formula(draw: Draw, place: str, *, space: bool) -> Json:
     """Return a force by formula: drag in air or in oil, or what swings with time."""
     swings = ["2*cos(3*t)", "sin(5*t)"] + (["-t"] if space else [])
     laws = [[f"-0.2*speed*v{axis}" for axis in "xyz"[: len(swings)]], [f"-v{axis}/2" for axis in "xyz"[: len(swings)]]]
-    return {"kind": "force", "name": "law", "place": place, "force": draw.one((*laws, swings))}
+    return {"kind": "force", "name": "formula", "place": place, "force": draw.one((*laws, swings))}
 
 
 def _tie(draw: Draw, units: list[Unit]) -> list[Json]:
