@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 
@@ -86,6 +86,9 @@ class SceneModel:
         Parts that have no force or connection in common.
     noticed : tuple of str
         Sentences.
+    redundant : mapping of str to tuple of str
+        Connections that hold at the start what others hold already, each with these others: what they share is not
+        determined.
     """
 
     name: str
@@ -97,6 +100,7 @@ class SceneModel:
     described: tuple[int, int]
     apart: tuple[PartModel, ...]
     noticed: tuple[str, ...]
+    redundant: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -43,8 +43,9 @@ def name_of_parts(parts: Sequence[_Named]) -> tuple[str, str]:
     return "parts apart", "the parts have no force or connection in common, and each has its own model"
 
 
-def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
-    """Return the model of a scene whose table has rows of the given rank."""
+def scene_model(found: Modelled, noticed: list[str], multipliers: Multipliers) -> SceneModel:
+    """Return the model of a scene whose forces at the start are these multipliers."""
+    rank = multipliers.rank
     table = found.described.measures.table
     apart = []
     for piece, (_, motion) in zip(found.pieces, found.whole.parts, strict=True):
@@ -80,6 +81,7 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
         (len(table.names), len(table.rows)),
         tuple(apart),
         tuple(noticed),
+        multipliers.redundant(),
     )
 
 

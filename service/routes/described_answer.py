@@ -54,6 +54,10 @@ class DescribedModel(View, Generic[N]):
     described: tuple[int, int] = Field(description="Coordinates and equations of constraint before.")
     apart: list[ScenePart[N]]
     noticed: list[str] = Field(description="Sentences.")
+    redundant: dict[str, list[str]] = Field(
+        description="Connections that hold at the start what others hold already, each with these others: the forces "
+        "that they share are not determined. mobility does not count what is redundant."
+    )
 
 
 class BodyAccelerations(View, Generic[N]):

@@ -1546,6 +1546,7 @@ class DescribedModel(TypedDict):
     described: Integers
     apart: list[ScenePart]
     noticed: list[str]
+    redundant: dict[str, list[str]]
 
 
 class ScenePart(TypedDict):
@@ -2333,6 +2334,7 @@ class CertifiedDescribedModel(TypedDict):
     described: Integers
     apart: list[CertifiedScenePart]
     noticed: list[str]
+    redundant: dict[str, list[str]]
 
 
 class CertifiedScenePart(TypedDict):

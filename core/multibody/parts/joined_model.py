@@ -45,6 +45,7 @@ def joined_model(models: Sequence[SceneModel]) -> SceneModel:
         (sum(model.described[0] for model in models), sum(model.described[1] for model in models)),
         tuple(part for model in models for part in model.apart),
         tuple(dict.fromkeys(sentence for model in models for sentence in model.noticed)),
+        {name: others for model in models for name, others in model.redundant.items()},
     )
 
 

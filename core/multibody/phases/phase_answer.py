@@ -163,7 +163,7 @@ def _start_of(
             f"constant throughout the motion: {names}" if motion.smooth else f"until {last:g} s nothing moves {names}"
         )
     return (
-        scene_model(found, noticed, multipliers.rank),
+        scene_model(found, noticed, multipliers),
         accelerations_of(found.described, found.whole.acceleration),
         forces_of_start(found.described, values),
     )

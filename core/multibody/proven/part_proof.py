@@ -64,7 +64,7 @@ class PartProof:
     def model(self) -> SceneModel:
         """Return the model, its figures as numerals."""
         found = self.found
-        model = scene_model(found, noticed_of(found, self.forces, self.multipliers), self.multipliers.rank)
+        model = scene_model(found, noticed_of(found, self.forces, self.multipliers), self.multipliers)
         return _in_numerals(model, found, self.number)
 
     def number(self, ball: Ball) -> Any:
