@@ -81,9 +81,6 @@ def compared(scene: Json, times: Sequence[float]) -> Verdict:
     except NotSupported as reason:
         verdict.not_supported = str(reason)
         return verdict
-    if first.ended is not None and first.ended.time == 0.0 and first.ended.kind in LIMITS:
-        verdict.not_supported = first.ended.kind
-        return verdict
     try:
         solution = solve_scene(scene_from(scene), times, ("trajectory", "forces-in-time"))
     except MechanicsError as fault:
@@ -91,10 +88,6 @@ def compared(scene: Json, times: Sequence[float]) -> Verdict:
         return verdict
     _compare(verdict, solution, first, moved, times)
     return verdict
-
-
-LIMITS = ("no-motion", "several-motions", "no-impact", "several-impacts", "undetermined-friction")
-"""What the plain engine, too, finds undecided at the start."""
 
 
 def reason_of(fault: Exception, scene: Json) -> str:
@@ -144,6 +137,7 @@ def _compare(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
             Difference("end", f"goes on past {detail}", f"{detail} {first.ended.time:.12g}", "goes on")
         )
         return
+    verdict.compared += first.ended is not None
     _samples(verdict, solution, first, moved, until)
 
 
