@@ -124,7 +124,7 @@ FORCE = "/trajectory/columns/rod.force/values"
         ({"formula": "2*pi*sqrt(m/k)", "unit": "m"}, "wrong-unit"),
         ({"formula": "pi", "unit": "s"}, "incorrect"),
         ({"formula": "2*pi", "unit": "kg"}, "wrong-unit"),
-        ({"formula": "2*pi"}, "incorrect"),
+        ({"formula": "2*pi"}, "missing-unit"),
     ],
 )
 def test_a_unit_beside_a_formula_counts(claim: dict[str, str], verdict: str) -> None:
