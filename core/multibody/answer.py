@@ -7,7 +7,7 @@ fields. Both are in the unit of the value, and None where the value is, or where
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 from core.multibody.model_answer import Assembly, SceneModel, SmallMotion
@@ -16,6 +16,7 @@ from core.quantities import Unit
 from core.systems.trajectory import How, MotionEvent, Trajectory
 
 Seconds = Annotated[float, Unit("s")]
+Metres = Annotated[float, Unit("m")]
 OwnUnit = Annotated[float, Unit("as in the field unit")]
 
 
@@ -137,6 +138,10 @@ class SceneExtremes:
         Whether that is a period, so that the extremes are those of all time.
     errors : mapping of str to float
         Of both times (s); of a constant, as long as what was searched.
+    least_places, largest_places : mapping of str to tuple of float
+        Centres of mass at these times (m).
+    place_errors : mapping of str to float
+        Of both, by body, as the lengths of vectors (m).
     """
 
     quantity: str
@@ -149,6 +154,9 @@ class SceneExtremes:
     until: Seconds
     periodic: bool
     errors: Mapping[str, Seconds]
+    least_places: Mapping[str, tuple[Metres, ...]] = field(default_factory=dict)
+    largest_places: Mapping[str, tuple[Metres, ...]] = field(default_factory=dict)
+    place_errors: Mapping[str, Metres] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

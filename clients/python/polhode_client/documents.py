@@ -1700,6 +1700,9 @@ class SceneExtremes(TypedDict):
     until: float
     periodic: bool
     errors: dict[str, float]
+    least_places: NotRequired[dict[str, Floats]]
+    largest_places: NotRequired[dict[str, Floats]]
+    place_errors: NotRequired[dict[str, float]]
 
 
 class SceneEquilibrium(TypedDict):

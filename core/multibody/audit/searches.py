@@ -70,10 +70,26 @@ class Searches:
             time = self.times[first + 3 * k + 1 :][:1]
             law = f"{'extreme' if isinstance(one, SceneExtremes) else 'value'} at its time"
             ledger.compare(law, one.quantity, time, np.array([off]), allowed)
+        self._check_places(ledger, asked)
         for own in self.extremes:
             self._check_all(ledger, own, times, columns)
         for name, equals, group in _groups(self.all_occurrences):
             self._check_none_missed(ledger, name, equals, group, times, columns)
+
+    def _check_places(self, ledger: Ledger, asked: Columns) -> None:
+        """Require that bodies are at the times of extremes where they are said to be."""
+        first = len(self._compared) - 2 * len(self.extremes)
+        for k, one in enumerate(self.extremes):
+            for side, places in enumerate((one.least_places, one.largest_places)):
+                row = 3 * (first + 2 * k + side) + 1 - len(self.times)
+                for name, place in places.items():
+                    column = asked.get(f"{name}.position")
+                    if column is None:
+                        continue
+                    off = np.linalg.norm(column.values[row] - np.array(place))
+                    allowed = column.error + one.place_errors[name] + ledger.rounding * np.abs(place).max()
+                    time = self.times[row : row + 1 or None]
+                    ledger.compare("place of the extreme", name, time, np.array([off]), allowed)
 
     def _check_all(self, ledger: Ledger, one: SceneExtremes, times: Numbers, columns: Columns) -> None:
         """Require that no sample is beyond the extremes."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -217,4 +217,17 @@ class DescribedSystem:
                     found.extend(along.occurrences(one, index))
                 else:
                     ranges.append(along.extremes(one, index))
-        return tuple(found), tuple(ranges)
+            return tuple(found), tuple(self._with_places(ranges))
+
+    def _with_places(self, ranges: Sequence[SceneExtremes]) -> Iterator[SceneExtremes]:
+        """Yield extremes with where the bodies are at their times."""
+        times = np.array([time for one in ranges for time in (one.least_time, one.largest_time)])
+        columns = self.sampled(times, forces=False) if ranges else {}
+        end = ".position"
+        own = {name.removesuffix(end): column for name, column in columns.items() if name.endswith(end)}
+        errors = {name: column.error for name, column in own.items()}
+        for k, one in enumerate(ranges):
+            least, largest = (
+                {name: tuple(column.values[row].tolist()) for name, column in own.items()} for row in (2 * k, 2 * k + 1)
+            )
+            yield replace(one, least_places=least, largest_places=largest, place_errors=errors)

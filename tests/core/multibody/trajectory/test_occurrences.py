@@ -334,3 +334,30 @@ def test_a_constant_of_a_fast_motion_has_no_time_of_its_own() -> None:
     (found,) = solve_scene(scene, [10.0], [ExtremesOf("top.angular_momentum.z")]).extremes
     assert found.largest - found.least <= 2.0 * found.error
     assert found.errors["least_time"] == found.until
+
+
+def test_extremes_say_where_the_bodies_are() -> None:
+    """A stone that is thrown is highest at vx vy/g, vy^2/(2 g); at the last time it is as far as it comes."""
+    stone = {"mass": 1, "at": [0, 0], "velocity": [3, 4]}
+    scene = read({"gravity": [0, -10], "bodies": {"stone": stone}})
+    searches = [ExtremesOf("stone.position.y"), ExtremesOf("stone.position.x")]
+    heights, ways = solve_scene(scene, [1.0], searches).extremes or ()
+    assert heights.largest_places["stone"] == pytest.approx((1.2, 0.8), abs=heights.place_errors["stone"] + 1e-15)
+    assert heights.least_places["stone"] == pytest.approx((3.0, -1.0), abs=heights.place_errors["stone"] + 1e-15)
+    assert ways.least_places["stone"] == (0.0, 0.0)
+    assert ways.largest_places["stone"] == pytest.approx((3.0, -1.0), abs=1e-15)
+    assert 0.0 <= heights.place_errors["stone"] < 1e-14
+
+
+def test_places_of_extremes_of_parts_and_beside_impacts() -> None:
+    scene = read(
+        {
+            "gravity": [0, -10],
+            "bodies": {"ball": {"mass": 1, "at": [1, 0.8]}, "other": {"mass": 1, "at": [5, 0], "velocity": [1, 0]}},
+            "connections": [{"kind": "contact", "place": "ball", "on": {"at": [0, 0]}, "restitution": 0.5}],
+        }
+    )
+    (found,) = solve_scene(scene, [0.7], [ExtremesOf("ball.position.y")]).extremes or ()
+    assert found.least_places.keys() == {"ball"}
+    assert found.least_places["ball"] == pytest.approx((1.0, 0.0), abs=found.place_errors["ball"] + 1e-15)
+    assert found.largest_places["ball"] == (1.0, 0.8)
