@@ -205,6 +205,7 @@ MECHANICS: Mapping[type[errors.MechanicsError], str] = {
     errors.MechanicsError: "mechanics-error",
     errors.InvalidParameter: "invalid-parameter",
     errors.SlackAtStart: "invalid-parameter",
+    errors.PlacesDisagree: "invalid-parameter",
     errors.UnphysicalInertia: "unphysical-inertia",
     errors.OpenMesh: "open-mesh",
     errors.NotApplicable: "not-applicable",
