@@ -57,8 +57,8 @@ PAUSE = 2.0
 class Engine:
     """Works on the studies in a store.
 
-    `longest` and `longest_answer` are the times that a stretch of members and a whole answer may take beyond what is
-    predicted (s).
+    `longest` is the time that a stretch of members may take beyond what is predicted, `longest_answer` that of a whole
+    answer (s).
     """
 
     def __init__(
@@ -279,8 +279,8 @@ class Engine:
         for unfinished in [*self._unfinished.values()]:
             for future, (stretch, since) in [*unfinished.in_flight.items()]:
                 expected = unfinished.each * (stretch[1] - stretch[0])
-                longest = self._longest_answer if unfinished.study.whole else self._longest
-                if now - since <= AHEAD * (longest + 20.0 * expected):
+                patience = AHEAD * (self._longest + 20.0 * expected)
+                if now - since <= (self._longest_answer if unfinished.study.whole else patience):
                     continue
                 client = self._cluster.client
                 busy = _processes_with({future.key}, client)
