@@ -712,3 +712,30 @@ async def test_the_value_of_a_search_is_a_number_as_those_of_the_scene() -> None
         found = response.json()["occurrences"]
         assert len(found) == count
         assert all(one["equals"] == -0.7071067811865476 for one in found)
+
+
+async def test_a_sketch_is_answered_planned_and_certified() -> None:
+    """The bob goes straight to its circle; what cannot be is refused by its pointer."""
+    sketch = of_rod(length=2.5) | {"assemble": "nearest"}
+    answer = (await asked(sketch | {"times": [0, 1]})).json()
+    assert answer["assembly"]["distance"] == 2.5
+    assert answer["assembly"]["bodies"]["p"] == {
+        "at": [1.5, -2.0],
+        "angle": None,
+        "axes": None,
+        "moved": 2.5,
+        "turned": 0.0,
+        "errors": answer["assembly"]["bodies"]["p"]["errors"],
+    }
+    assert max(x for x in answer["assembly"]["errors"].values()) < 1e-15
+    assert answer["trajectory"]["columns"]["p.position"]["values"][0] == [1.5, -2.0]
+    plan = (await asked({"path": PATH, "request": sketch}, "/v1/plan")).json()
+    assert plan["answerable"] is True
+    certified = (await asked(sketch | {"digits": 30}, "/v1/certified/scenes")).json()
+    assert certified["forces"]["rod-1.force"]["value"].startswith("7.8480000")
+    for wrong, pointer in (("near", "/assemble"), ({"nearest": ["q"]}, "/assemble/nearest/0"), (3, "/assemble")):
+        refused = await asked(sketch | {"assemble": wrong})
+        assert refused.status_code == 422
+        assert refused.json()["errors"][0]["pointer"] == pointer
+    refused = (await asked(of_rod(length=2.5))).json()
+    assert '"p" at [1.5, -2]' in json.dumps(refused).replace('\\"', '"')
