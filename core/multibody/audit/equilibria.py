@@ -172,7 +172,8 @@ def _holding(description: Description, freedoms: Freedoms, placement: Placement,
     found = [np.zeros((0, freedoms.count, len(next(iter(placement.values())).position)))]
     for connection in description.connections:
         numbers, virtual = freedoms.virtual(connection.bodies)
-        lines = connection.holding(placement, virtual).values()
+        # The components of one force hold along one direction, which is given under the name of each.
+        lines = {id(line): line for line in connection.holding(placement, virtual).values()}.values()
         for line in (*lines, *connection.unanswered(placement, virtual)):
             own = np.zeros((1, *found[0].shape[1:]))
             own[0, numbers] = line
