@@ -276,7 +276,7 @@ TESTED_IN |= {
         ),
         "laws/test_formula_forces": (
             "audit/formula_definitions audit/formula_forces audit/formulas language/motion_formulas laws/kernel "
-            "laws/law laws/samples laws/series laws/tape table/formula_laws"
+            "laws/law laws/linear laws/samples laws/series laws/tape table/formula_laws"
         ),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "

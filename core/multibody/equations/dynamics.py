@@ -40,7 +40,7 @@ def parts(table: Table) -> list[list[int]]:
             join(key)
     for row in table.rows:
         join(sorted(row.coordinates()))
-    for law in table.laws:
+    for law in table.acting:
         join(sorted(law.coordinates()))
     groups: dict[int, list[int]] = {}
     for i in range(len(parent)):
@@ -63,7 +63,7 @@ def _sees(table: Table, group: list[int], clocks: list[int]) -> bool:
         for key in keys:
             if timed & set(key) and inside & set(key):
                 return True
-    every = [row.coordinates() for row in table.rows] + [law.coordinates() for law in table.laws]
+    every = [row.coordinates() for row in table.rows] + [law.coordinates() for law in table.acting]
     return any(timed & seen and inside & seen for seen in every)
 
 
@@ -91,7 +91,7 @@ def restricted(table: Table, indices: Sequence[int]) -> Table:
             number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.drag.items()
         }
         new.rows.append(Row(row.name, renamed, rates, row.rate, drag))
-    new.laws = [law.renumbered(number) for law in table.laws if law.coordinates() <= set(number)]
+    new.laws = [law.renumbered(number) for law in table.acting if law.coordinates() <= set(number)]
     return new
 
 

@@ -190,7 +190,7 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     # Entries of W and of W + X that vary, as series.
     varying = [_varying(table.rows[r].rates, places) for r in chosen]
     pushing = [_joined(varying[k], _dragging(table, table.rows[r], places, rates)) for k, r in enumerate(chosen)]
-    laws = LawSeries(table.laws)
+    laws = LawSeries(table.acting)
     for k in range(order - 1):
         right = [ZERO] * (count + len(chosen))
         if k == 0:

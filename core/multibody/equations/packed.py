@@ -237,10 +237,10 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
 
 def _packed_laws(table: Table, units: Units) -> PackedLaws:
     """Return the laws of a table: their values are in SI units, along the time of the kernels."""
-    tape, s, t = Tape.of(table.laws), units.lengths, units.time
+    tape, s, t = Tape.of(table.acting), units.lengths, units.time
     push = [
         (pair(x, s[i] + 2 * t - units.action), i, output)
-        for law, output in zip(table.laws, tape.outputs, strict=True)
+        for law, output in zip(table.acting, tape.outputs, strict=True)
         for i, x in law.push.items()
     ]
     return PackedLaws(

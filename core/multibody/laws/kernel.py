@@ -29,6 +29,10 @@ NUMBER, PLACE, RATE, ADD, SUBTRACT, MULTIPLY, DIVIDE = map(
 )
 ROOT, EXP, SINE, COSINE, SINH, COSH = map(int, (Op.ROOT, Op.EXP, Op.SINE, Op.COSINE, Op.SINH, Op.COSH))
 LOG, ASIN, ATAN, ATAN2, POWER, LENGTH = map(int, (Op.LOG, Op.ASIN, Op.ATAN, Op.ATAN2, Op.POWER, Op.LENGTH))
+TANH, TANH_SLOPE = int(Op.TANH), int(Op.TANH_SLOPE)
+
+LARGEST_TANGENT = 40.0
+"""Argument from which on a hyperbolic tangent is one to pairs of doubles: it differs by 2 exp(-80)."""
 
 
 class PackedLaws(NamedTuple):
@@ -111,7 +115,7 @@ def _power(values: Floats, laws: PackedLaws, own: int, a: int, b: int, k: int) -
             return math.nan, 0.0
         lh, ll = dd_log(values[a, 0, 0], values[a, 0, 1])
         lh, ll = dd_mul(lh, ll, eh, el)
-        return dd_exp(lh, ll) if abs(lh) < MOST_EXPONENT else (math.nan, 0.0)
+        return dd_exp(lh, ll) if abs(lh) < MOST_EXPONENT else (0.0 if lh < 0.0 else math.nan, 0.0)
     sh, sl = 0.0, 0.0
     for j in range(1, k + 1):
         fh, fl = dd_mul_d(eh, el, float(j))
@@ -130,7 +134,13 @@ def _first(values: Floats, code: int, a: int, b: int) -> Pair:
     if code == ROOT:
         return dd_sqrt(high, low) if high > 0.0 else (0.0 if high == 0.0 else math.nan, 0.0)
     if code == EXP:
-        return dd_exp(high, low) if abs(high) < MOST_EXPONENT else (math.nan, 0.0)
+        # Below 1e-304 an exponential vanishes beside every number of a description.
+        return dd_exp(high, low) if abs(high) < MOST_EXPONENT else (0.0 if high < 0.0 else math.nan, 0.0)
+    if code == TANH:
+        if abs(high) > LARGEST_TANGENT:
+            return math.copysign(1.0, high), 0.0
+        sh, sl, ch, cl = dd_sinh_cosh(high, low)
+        return dd_div(sh, sl, ch, cl)
     if code == LOG:
         return dd_log(high, low) if high > 0.0 else (math.nan, 0.0)
     if code == ASIN:
@@ -189,6 +199,9 @@ def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, way: float
             ph, pl = _convolved(values, b, 1, o, k - 1, k)
             sh, sl = dd_add(values[a, k, 0], values[a, k, 1], -ph, -pl)
             sh, sl = dd_div(sh, sl, values[b, 0, 0], values[b, 0, 1])
+        elif code == TANH_SLOPE:
+            ph, pl = _convolved(values, o - 1, 0, o - 1, k, k + 1)
+            sh, sl = dd_add(1.0 if k == 0 else 0.0, 0.0, -ph, -pl)
         elif code == LENGTH:
             sh, sl = _length(values, o, a, b, c, k, way)
         elif code == POWER:
@@ -212,6 +225,8 @@ def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, way: float
             sh, sl = _root(values, o, 0, (values[a, k, 0], values[a, k, 1]), k)
         elif code == EXP:
             sh, sl = _integrated(values, a, o, k)
+        elif code == TANH:
+            sh, sl = _integrated(values, a, o + 1, k)
         elif code == ATAN2:
             sh, sl = _integrated(values, a, c, k)
             ph, pl = _integrated(values, b, d, k)

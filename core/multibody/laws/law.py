@@ -50,6 +50,8 @@ class Law:
     numbers : mapping of str to ball
     push : mapping of int to ball
         Force on each coordinate where the value is one.
+    in_damping : bool
+        Whether its forces are entries of D, so that only its value is of interest.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Law:
     inputs: Mapping[str, Input]
     numbers: Mapping[str, Ball] = field(default_factory=dict)
     push: Mapping[int, Ball] = field(default_factory=dict)
+    in_damping: bool = False
 
     def coordinates(self) -> set[int]:
         """Return the coordinates that it depends on or pushes."""

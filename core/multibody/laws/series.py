@@ -9,7 +9,7 @@ from flint import arb
 
 from core.balls import as_text
 from core.errors import InvalidParameter
-from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
 from core.multibody.laws.law import Law
 from core.multibody.laws.tape import Op, Tape
 
@@ -22,6 +22,7 @@ FUNCTIONS: dict[int, Callable[[Ball], Ball]] = {
     Op.COSINE: arb.cos,
     Op.SINH: arb.sinh,
     Op.COSH: arb.cosh,
+    Op.TANH: arb.tanh,
     Op.LOG: arb.log,
     Op.ASIN: arb.asin,
     Op.ATAN: arb.atan,
@@ -84,6 +85,9 @@ class LawSeries:
                 return arb.atan2(values[a][0], values[b][0])
             case Op.POWER if k == 0:
                 return values[a][0] ** self.tape.numbers[b]
+            case Op.TANH_SLOPE:
+                tangent = values[number - 1][: k + 1]
+                return (ONE if k == 0 else ZERO) - _convolved(tangent, tangent)
             case Op.LENGTH:
                 return _length(own, [values[i] for i in (a, b, c)], k)
         if k == 0:
@@ -93,7 +97,7 @@ class LawSeries:
                 return (values[a][k] - _convolved(own[1:k], own[1:k])) / (2 * own[0])
             case Op.EXP:
                 return _integrated(values[a], own, k)
-            case Op.SINE | Op.SINH:
+            case Op.SINE | Op.SINH | Op.TANH:
                 return _integrated(values[a], values[number + 1], k)
             case Op.COSINE:
                 return -_integrated(values[a], values[number - 1], k)

@@ -64,6 +64,10 @@ class Op(IntEnum):
     """a to the power of number b."""
     LENGTH = 18
     """Length of the vector (a, b, c)."""
+    TANH = 19
+    """Hyperbolic tangent of a; the next operation is its derivative."""
+    TANH_SLOPE = 20
+    """One less the square of the operation before."""
 
 
 Operation = tuple[int, int, int, int, int]
@@ -181,8 +185,11 @@ class _Writer:
                 return tape.add(Op.SUBTRACT, tape.number(ZERO), first)
             case "sin" | "cos" | "tan":
                 return self._pair(Op.SINE, Op.COSINE, kind, first)
-            case "sinh" | "cosh" | "tanh":
+            case "sinh" | "cosh":
                 return self._pair(Op.SINH, Op.COSH, kind, first)
+            case "tanh":
+                # A quotient of exponentials would overflow where the tangent is one.
+                return self._pair(Op.TANH, Op.TANH_SLOPE, kind, first)
             case "log":
                 return tape.add(Op.LOG, first, tape.add(Op.DIVIDE, tape.number(ONE), first))
             case "asin" | "acos":
@@ -206,7 +213,7 @@ class _Writer:
         first = tape.add(sine, argument)
         second = tape.add(cosine, argument)
         assert second == first + 1, "a cosine follows its sine"
-        if kind.startswith("sin"):
+        if kind.startswith("sin") or kind == "tanh":
             return first
         return second if kind.startswith("cos") else tape.add(Op.DIVIDE, first, second)
 

@@ -238,7 +238,7 @@ class SceneSystem:
     whole: Whole
 
     def __post_init__(self) -> None:
-        if self.whole.reduced.table.laws:
+        if self.whole.reduced.table.acting:
             raise NotApplicable(
                 "methods do not run scenes whose forces are formulas yet",
                 remedy="leave the method out, or write forces that are linear in places and rates",

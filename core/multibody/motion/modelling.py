@@ -212,7 +212,7 @@ def _motion(piece: Piece) -> Motion:
     part, gain, chosen = piece.table, piece.acceleration, piece.chosen
     if all(is_zero(x) for x in part.v) and all(is_zero(x) for x in gain):
         return Rest(part)
-    if part.laws:
+    if part.acting:
         return Numerical.of(part, gain, chosen, "forces are formulas of time, places or rates that are not linear")
     linear = all(row.constant for row in part.rows)
     if linear and not part.stiffness and not part.damping and not part.gyration:

@@ -276,7 +276,7 @@ class Whole:
         terms += [(i, abs(float(x)) * place[j]) for (i, j), x in table.stiffness.items()]
         terms += [(i, abs(float(x)) * rate[j]) for (i, j), x in table.damping.items()]
         terms += [(i, abs(float(x)) * place[j] * rate[k]) for (i, j, k), x in table.gyration.items()]
-        for law in table.laws:
+        for law in table.acting:
             pushed = float(np.max(np.abs(values_of(law, q, v)[0]), initial=0.0))
             terms += [(i, abs(float(x)) * pushed) for i, x in law.push.items()]
         power = 2 * units.time - units.action

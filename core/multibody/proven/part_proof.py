@@ -46,7 +46,7 @@ class PartProof:
             self.found = _in_closed_forms(modelled(scene))
             self.multipliers = multipliers_at_start(self.found.described.measures, self.found.whole.acceleration)
             self.forces = forces_at_start(self.found.described.measures, self.multipliers)
-        if self.found.described.measures.table.laws:
+        if self.found.described.measures.table.acting:
             raise NotApplicable(
                 "digits are not proven yet where forces are formulas",
                 path=("connections",),

@@ -17,7 +17,7 @@ from core.multibody.table.table import Table
 
 def free_shift(table: Table) -> Line | None:
     """Return a direction with mass along which a part with quadratic terms can be shifted; None without one."""
-    pushed = {i for law in table.laws for i in law.coordinates()}
+    pushed = {i for law in table.acting for i in law.coordinates()}
     for part in parts(table):
         inside = set(part)
         # What a formula makes of a shift is not known.

@@ -17,7 +17,7 @@ from core.multibody.table.table import Row, Table
 def pin(state: Reduced) -> bool:
     """Make constants of coordinates at rest whose equations vanish wherever the others are."""
     table = state.table
-    pushed = {i for law in table.laws for i in law.push}
+    pushed = {i for law in table.acting for i in law.push}
     pinned = {i for i in range(len(table.names)) if is_zero(table.v[i]) and table.units[i] != "s" and i not in pushed}
     coupled: dict[int, dict[tuple[int, ...], None]] = {i: {} for i in pinned}
     for part in (table.mass, table.stiffness, table.damping, table.gyration):

@@ -168,6 +168,11 @@ class Table:
         """Add to one entry of B."""
         _add(self.gyration, (i, j, k), value)
 
+    @property
+    def acting(self) -> list[Law]:
+        """The laws whose forces are no entries of D."""
+        return [law for law in self.laws if not law.in_damping]
+
     def forces(self) -> list[Ball]:
         """Return b - K q - D q' + B(q, q') + G f(q, q') at the start."""
         q, v = self.q, self.v
@@ -180,7 +185,8 @@ class Table:
             total[i] = total[i] - value * v[j]
         for (i, j, k), value in self.gyration.items():
             total[i] = total[i] + value * q[j] * v[k]
-        for law, force in zip(self.laws, values_at(self.laws, q, v), strict=True):
+        acting = self.acting
+        for law, force in zip(acting, values_at(acting, q, v), strict=True):
             for i, factor in law.push.items():
                 total[i] = total[i] + factor * force
         return total
@@ -275,7 +281,7 @@ class Table:
             for key in [key for key, value in clean.items() if ZERO in value]:
                 del clean[key]
         new.rows = [row.along(expressions) for row in self.rows]
-        new.laws = [law for law in (own.along(expressions) for own in self.laws) if law.push]
+        new.laws = [law for law in (own.along(expressions) for own in self.acting) if law.push]
         return new
 
 

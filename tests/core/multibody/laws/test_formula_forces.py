@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import Any
 
 import mpmath as mp
@@ -68,6 +69,46 @@ def test_a_charge_in_crossed_fields_moves_on_a_cycloid() -> None:
     scene = {"gravity": [0, 0], "let": {"B": 2, "E": 3}, "bodies": {"p": POINT},
              "connections": [{"kind": "field", "force": ["B*vy", "E - B*vx"]}]}  # fmt: skip
     compared(answer(scene), "p.position", lambda t: [1.5 * (t - mp.sin(2 * t) / 2), 0.75 * (1 - mp.cos(2 * t))])
+
+
+def test_a_formula_that_is_linear_in_rates_is_a_damping() -> None:
+    """Drag against the velocity: v = v0 exp(-c t/m) at any time; methods run it, and digits are proven."""
+    scene = forced(["-c*vx/3", "-2*c*vy/6"], let={"c": 0.75}, body={"velocity": [2, 0]}) | {"gravity": [0, -1]}
+    late = [*TIMES.tolist(), 200.0]
+    found = answer(scene, late)
+    assert found.model.name == "modes"
+    compared(found, "p.velocity", lambda t: [2 * mp.exp(-t / 4), -4 * (1 - mp.exp(-t / 4))])
+    compared(found, "f.work", lambda t: kinetic(t) - 2 + fallen(t))
+    by_method = answer(scene, [0.0, 1.0], outputs=("trajectory",), method=RungeKutta4(0.01)).trajectory
+    assert by_method is not None
+    assert by_method.columns["p.velocity"].values[1, 0] == pytest.approx(2 * np.exp(-0.25), rel=1e-8)
+    proven = proven_answer(scene_from(scene), 30, [Fraction(1)], ("trajectory",)).columns
+    assert proven is not None
+    assert proven["p.velocity"].values[0][0].startswith(mp.nstr(2 * mp.exp(mp.mpf(-1) / 4), 20)[:18])
+
+
+def kinetic(t: mp.mpf) -> mp.mpf:
+    return (2 * mp.exp(-t / 4)) ** 2 / 2 + (4 * (1 - mp.exp(-t / 4))) ** 2 / 2
+
+
+def fallen(t: mp.mpf) -> mp.mpf:
+    """Return the potential energy of a body that sinks with drag from the origin, with m = g = 1."""
+    return -4 * (t - 4 * (1 - mp.exp(-t / 4)))
+
+
+def test_a_magnetic_field_is_one_too() -> None:
+    """A circle with w = q B/m."""
+    scene = {"gravity": [0, 0], "let": {"B": 2}, "bodies": {"p": POINT | {"velocity": [3, 0]}},
+             "connections": [{"kind": "field", "force": ["B*vy", "-B*vx"]}]}  # fmt: skip
+    found = answer(scene, [0.0, 1.0, 1000.0], outputs=("trajectory",))
+    assert found.model.name == "modes"
+    compared(found, "p.position", lambda t: [1.5 * mp.sin(2 * t), 1.5 * (mp.cos(2 * t) - 1)])
+
+
+def test_functions_go_on_where_exponentials_overflow() -> None:
+    """A step of tanh far from its middle, and the tail of a bell."""
+    found = answer(forced(["tanh(2000*(t - 3)) + exp(-(40*(t + 1))^2)", 0]), [0.0, 1.0, 2.0], outputs=("trajectory",))
+    compared(found, "p.velocity", lambda t: [-t, 0])
 
 
 def test_a_driven_oscillator_at_resonance_grows_linearly() -> None:
