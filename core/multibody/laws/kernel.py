@@ -35,6 +35,10 @@ LARGEST_TANGENT = 40.0
 """Argument from which on a hyperbolic tangent is one to pairs of doubles: it differs by 2 exp(-80)."""
 
 
+PROBES, HALVINGS = 16, 54
+"""Times in a step at which a length is looked at for a zero, and halvings of the time between two: those of doubles."""
+
+
 class PackedLaws(NamedTuple):
     """The laws of a table for the kernels; the last axis of arrays of numbers is (value, tail).
 
@@ -87,9 +91,11 @@ def _root(values: Floats, own: int, leading: int, square: Pair, k: int) -> Pair:
 
 
 @kernel()
-def _length(values: Floats, own: int, a: int, b: int, c: int, k: int, way: float) -> Pair:
+def _length(values: Floats, own: int, operation: Integers, k: int, course: Floats) -> Pair:
     """Return coefficient k of the length of a vector, which may grow from zero: then as |t|^m with a power of time."""
-    leading = 0
+    a, b, c, way = operation[1], operation[2], operation[3], course[0]
+    # What has just been followed to its zero has the rounding of it as its first coefficient.
+    leading = int(course[1 + own])
     while leading <= k:
         if values[a, leading, 0] != 0.0 or values[b, leading, 0] != 0.0 or values[c, leading, 0] != 0.0:
             break
@@ -169,15 +175,15 @@ def _input(laws: PackedLaws, path: Floats, size: int, operation: Integers, k: in
 
 
 @kernel()
-def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, way: float, values: Floats) -> None:
+def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, course: Floats, values: Floats) -> None:
     """Fill in coefficient k of every operation, the earlier ones being known.
 
     Parameters
     ----------
     path : (planes, orders * size)
         Coefficients of the coordinates, each order at k size, known up to k + 1.
-    way : float
-        Sign of the times that follow.
+    course : (1 + o,)
+        Sign of the times that follow, and 1 for every length that is zero at the start of the series.
     values : (o, orders, 2)
     """
     for o in range(laws.operations.shape[0]):
@@ -203,7 +209,7 @@ def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, way: float
             ph, pl = _convolved(values, o - 1, 0, o - 1, k, k + 1)
             sh, sl = dd_add(1.0 if k == 0 else 0.0, 0.0, -ph, -pl)
         elif code == LENGTH:
-            sh, sl = _length(values, o, a, b, c, k, way)
+            sh, sl = _length(values, o, operation, k, course)
         elif code == POWER:
             sh, sl = _power(values, laws, o, a, b, k)
         elif code in (SINE, SINH):
@@ -234,3 +240,63 @@ def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, way: float
         else:
             sh, sl = _integrated(values, a, b, k)
         values[o, k, 0], values[o, k, 1] = sh, sl
+
+
+@kernel()
+def _value(values: Floats, part: int, time: float) -> float:
+    """Return a series at a time, in doubles."""
+    total = 0.0
+    for k in range(values.shape[1] - 1, -1, -1):
+        total = total * time + values[part, k, 0]
+    return total
+
+
+@kernel()
+def _along_a_line(values: Floats, operation: Integers) -> int:
+    """Return the only component of a vector that is not zero for good, -1 where there are more or none."""
+    found = -1
+    for part in operation[1:4]:
+        for k in range(values.shape[1]):
+            if values[part, k, 0] != 0.0:
+                if found >= 0 and found != part:
+                    return -1
+                found = part
+                break
+    return found
+
+
+@kernel()
+def until_zero(laws: PackedLaws, values: Floats, h: float, course: Floats) -> float:
+    """Return the part of a step up to the first zero of a length along a line, where it has a corner; else the step.
+
+    The marks of lengths in `course` are set where they are zero at the end of that part, and removed elsewhere.
+    """
+    best = h
+    for o in range(laws.operations.shape[0]):
+        if laws.operations[o, 0] != LENGTH:
+            continue
+        course[1 + o] = 0.0
+        part = _along_a_line(values, laws.operations[o])
+        if part < 0:
+            continue
+        leading = 0
+        while values[o, leading, 0] == 0.0 and leading < values.shape[1] - 1:
+            leading += 1
+        sign = 1.0 if values[o, leading, 0] * values[part, leading, 0] > 0.0 else -1.0
+        low = 0.0
+        for j in range(1, PROBES + 1):
+            high = h * j / PROBES
+            if sign * _value(values, part, high) < 0.0:
+                for _ in range(HALVINGS):
+                    middle = 0.5 * (low + high)
+                    if sign * _value(values, part, middle) < 0.0:
+                        high = middle
+                    else:
+                        low = middle
+                if abs(high) < abs(best):
+                    best = high
+                    course[1:] = 0.0
+                    course[1 + o] = 1.0
+                break
+            low = high
+    return best

@@ -26,7 +26,7 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
 from core.multibody.equations.packed import Packed
 from core.multibody.equations.saddle import Saddle, inverted, saddle_space
-from core.multibody.laws.kernel import values_of_laws
+from core.multibody.laws.kernel import until_zero, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread, started, summed
 
 SHORTEST = 1e-12
@@ -64,7 +64,7 @@ def coefficients(table: Packed, space: Saddle, products: Products, since: int) -
         for p in range(table.damp.shape[0]):
             right[table.damp_at[p, 0]] -= table.damp[p, 0] * (k + 1) * path[(k + 1) * size + table.damp_at[p, 1]]
         if table.laws.push.shape[0] > 0:
-            values_of_laws(table.laws, products.path, size, k, products.way[0], products.laws)
+            values_of_laws(table.laws, products.path, size, k, products.course, products.laws)
         for p in range(table.laws.push.shape[0]):
             right[table.laws.push_at[p, 0]] += table.laws.push[p, 0] * products.laws[table.laws.push_at[p, 1], k, 0]
         summed(products, k)
@@ -231,7 +231,7 @@ def advance(
     if not inverted(table, lines, space):
         return SINGULAR, 0
     way = 1.0 if end >= clock[0] else -1.0
-    products.way[0] = way
+    products.course[0] = way
     for step in range(series.shape[0]):
         starts[step, 0], starts[step, 1] = clock[0], clock[1]
         left = (end - clock[0]) - clock[1]
@@ -250,6 +250,8 @@ def advance(
             return (SINGULAR if abs(h) >= 0.0 else LOST), step
         if abs(h) >= abs(left):
             h = left
+        if table.laws.operations.shape[0] > 0:
+            h = until_zero(table.laws, products.laws, h, products.course)
         for b in range(0, n, WIDTH):
             moved, rate, by = alike(0.0), alike(0.0), alike(h)
             for k in range(order, 2, -1):

@@ -19,7 +19,7 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.equations.packed import Packed
 from core.multibody.equations.saddle import CORRECTED, FAILED, Saddle, inverted_pairs, padded, saddle_space
-from core.multibody.laws.kernel import PackedLaws, values_of_laws
+from core.multibody.laws.kernel import PackedLaws, until_zero, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread_pairs, started, summed_pairs
 from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, SINGULAR, coefficients, step_size
 
@@ -61,7 +61,7 @@ def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: 
             ph, pl = dd_mul_d(path[0, j], path[1, j], k + 1.0)
             right[0, i], right[1, i] = gathered(right[0, i], right[1, i], -table.damp[p, 0], -table.damp[p, 1], ph, pl)
         if table.laws.push.shape[0] > 0:
-            values_of_laws(table.laws, path, size, k, products.way[0], products.laws)
+            values_of_laws(table.laws, path, size, k, products.course, products.laws)
         _pushed(table.laws, products.laws, k, right)
         summed_pairs(products, k)
         for p in range(at.shape[0]):
@@ -240,7 +240,7 @@ def advance_pairs(
     if found == FAILED:
         return SINGULAR, 0
     way = 1.0 if end >= clock[0] else -1.0
-    products.way[0] = way
+    products.course[0] = way
     for step in range(series.shape[0]):
         starts[step, 0], starts[step, 1] = clock[0], clock[1]
         left = (end - clock[0]) - clock[1]
@@ -264,6 +264,8 @@ def advance_pairs(
             return (SINGULAR if abs(h) >= 0.0 else LOST), step
         if abs(h) >= abs(left):
             h = left
+        if table.laws.operations.shape[0] > 0:
+            h = until_zero(table.laws, products.laws, h, products.course)
         _moved(path, size, h, moved)
         for i in range(n):
             q[i, 0], q[i, 1] = moved[0, 0, i], moved[0, 1, i]
@@ -306,6 +308,7 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
     space = saddle_space(table, 2)
     right, found = np.zeros((2, padded(n + m))), np.empty((2, padded(n + m)))
     path, laws = np.empty((2, 2 * n)), np.zeros((table.laws.operations.shape[0], 1, 2))
+    course = np.zeros(1 + table.laws.operations.shape[0])
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
         if inverted_pairs(table, lines, space) == FAILED:
@@ -340,7 +343,7 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
             for i in range(n):
                 path[0, i], path[1, i] = q[s, i, 0], q[s, i, 1]
                 path[0, n + i], path[1, n + i] = v[s, i, 0], v[s, i, 1]
-            values_of_laws(table.laws, path, n, 0, 1.0, laws)
+            values_of_laws(table.laws, path, n, 0, course, laws)
             _pushed(table.laws, laws, 0, right)
         for i in range(n + m):
             right[0, i], right[1, i] = settled(right[0, i], right[1, i])

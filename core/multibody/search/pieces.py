@@ -227,7 +227,9 @@ def _expanded(
     sizes = np.zeros(series.shape[:-1])
     # States of another layout would have the kernel compiled once more.
     places, rates = np.ascontiguousarray(q * down), np.ascontiguousarray(v * (down * two_to(units.time)))
-    done = expand(arrays, places, rates, _covering(reach, units.time), exponents, steps, series, sizes)
+    forwards = -1.0 if np.any(np.asarray(reach) < 0.0) else 1.0
+    longest = _covering(reach, units.time)
+    done = expand(arrays, places, rates, longest, forwards, exponents, steps, series, sizes)
     if done < count:
         raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
     way = np.sign(reach)

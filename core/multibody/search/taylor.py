@@ -14,15 +14,39 @@ from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import dd_mul_d
 from core.multibody.equations.packed import Packed
-from core.multibody.equations.saddle import FAILED, inverted_pairs, saddle_space
-from core.multibody.motion.products import products_of, started
+from core.multibody.equations.saddle import FAILED, Saddle, inverted_pairs, saddle_space
+from core.multibody.laws.kernel import until_zero
+from core.multibody.motion.products import Products, products_of, started
 from core.multibody.motion.series import step_size
 from core.multibody.motion.series_pairs import coefficients_pairs, entries_of_lines_pairs
 
 ORDER = 22
 """Highest power of the coordinates; multipliers have two less."""
+NEAR = 2.0**-30
+"""Share of a step within which a corner is taken to be at its start: the force of a speed is then off by 2^-60."""
 TOLERANCE = 2.0**-50
 """Share of the motion that the last powers are over a piece: a third of the radius of convergence."""
+
+
+@kernel()
+def _to_corner(table: Packed, space: Saddle, products: Products, own: Floats, step: float) -> float:
+    """Return the part of a step up to a corner of a formula; the series is that beyond a corner that is near.
+
+    What lies between the state and a corner that is near has a force that is smaller than all others by `NEAR`.
+    """
+    n, size, order = own.shape[0], products.right.shape[1], own.shape[1] - 1
+    course, path = products.course, products.path
+    found = abs(until_zero(table.laws, products.laws, course[0] * step, course))
+    if found < NEAR * step:
+        started(table, products)
+        coefficients_pairs(table, space, products, order - 1)
+        for i in range(n):
+            for k in range(order + 1):
+                own[i, k] = path[0, k * size + i]
+        step = step_size(own, table.group, TOLERANCE)
+        found = abs(until_zero(table.laws, products.laws, course[0] * step, course))
+    course[1:] = 0.0
+    return min(step, found)
 
 
 @kernel()
@@ -31,6 +55,7 @@ def expand(
     q: Floats,
     v: Floats,
     longest: Integers,
+    way: float,
     exponents: Integers,
     steps: Floats,
     series: Floats,
@@ -43,6 +68,8 @@ def expand(
     q, v : (t, n, 2)
     longest : (t,)
         Exponents of two of the longest times that are of interest.
+    way : float
+        Sign of the times that follow the states.
     exponents : (t,)
         Filled with those of the lengths of the pieces, at most these.
     steps : (t,)
@@ -58,6 +85,7 @@ def expand(
     space, products = saddle_space(table, 2), products_of(table, order, 2)
     path, size = products.path, products.right.shape[1]
     own = np.empty((n, order + 1))
+    products.course[0] = way
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
         if inverted_pairs(table, lines, space) == FAILED:
@@ -71,6 +99,8 @@ def expand(
             for k in range(order + 1):
                 own[i, k] = path[0, k * size + i]
         step = step_size(own, table.group, TOLERANCE)
+        if table.laws.operations.shape[0] > 0:
+            step = _to_corner(table, space, products, own, step)
         if not step > 0.0:
             return s
         exponent, steps[s] = longest[s], step

@@ -64,6 +64,28 @@ def test_a_body_falls_from_rest_with_quadratic_drag() -> None:
     assert not found.energy.conserved
 
 
+def test_a_body_that_is_thrown_up_turns_back_with_quadratic_drag() -> None:
+    """v = u tan(T - g t/u) up to the top at g t/u = T, and -u tanh(g t/u - T) from there, with u = g = 10, T = pi/4."""
+    scene = forced(["-speed*vx/10", "-speed*vy/10"], body={"velocity": [0, 10]}) | {"gravity": [0, -10]}
+    top = mp.pi / 4
+
+    def rate(t: mp.mpf) -> mp.mpf:
+        return 10 * mp.tan(top - t) if t < top else -10 * mp.tanh(t - top)
+
+    def height(t: mp.mpf) -> mp.mpf:
+        if t < top:
+            return 10 * mp.log(mp.cos(top - t) / mp.cos(top))
+        return -10 * mp.log(mp.cos(top)) - 10 * mp.log(mp.cosh(t - top))
+
+    for times in ([0.0, 0.3, 0.8], [0.0, 0.78539, 2.0]):
+        found = answer(scene, times, outputs=("trajectory", ExtremesOf("p.position.y")))
+        compared(found, "p.velocity", lambda t: [0, rate(t)])
+        compared(found, "p.position", lambda t: [0, height(t)])
+        assert found.extremes is not None
+        assert found.extremes[0].largest == pytest.approx(5 * np.log(2), rel=1e-15)
+        assert found.extremes[0].largest_time == pytest.approx(np.pi / 4, rel=1e-14)
+
+
 def test_a_charge_in_crossed_fields_moves_on_a_cycloid() -> None:
     """From rest: x = (E/B)(t - sin(w t)/w), y = (E/(B w))(1 - cos(w t)) with w = q B/m."""
     scene = {"gravity": [0, 0], "let": {"B": 2, "E": 3}, "bodies": {"p": POINT},
