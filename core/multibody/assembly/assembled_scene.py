@@ -15,7 +15,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.balls import precision
-from core.errors import InvalidParameter, SlackAtStart
+from core.errors import InvalidParameter, NotApplicable, SlackAtStart
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, is_zero, size
 from core.multibody.assembly.described_bodies import (
@@ -40,6 +40,7 @@ from core.multibody.language.joints import Pin
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import AssembledBody, Assembly
+from core.multibody.table.chains import has_chain
 from core.multibody.table.description import Described, described
 from core.near_names import near_and_all
 from core.work import spend
@@ -86,11 +87,17 @@ def assembled(scene: Scene, numerals: Numerals | None = None) -> AssembledScene:
     InvalidParameter
         For connections that cannot be satisfied, with by how much they are missed at least.
     NotApplicable
-        Where none of the places is the nearest.
+        Where none of the places is the nearest; for scenes with a chain.
     """
     if scene.assemble is None:
         return AssembledScene(scene, None)
     movable = _movable(scene)
+    if has_chain(scene):
+        raise NotApplicable(
+            "a chain has the lengths of its sides from the places of its ends, which are no sketch then",
+            path=("assemble",),
+            remedy="leave assemble out, and give the places of the ends",
+        )
     with precision(BITS):
         plain = replace(scene, assemble=None)
         found = described(plain, numerals, one_sided=True, sketch=True)

@@ -184,6 +184,14 @@ def test_places_without_a_nearest_are_refused() -> None:
         assembled(sketch({"bob": {"mass": 1, "at": [0, 0]}}, [ROD]))
 
 
+def test_chains_are_not_assembled() -> None:
+    ends = {"front": {"mass": 0, "at": [0, -0.5]}, "back": {"mass": 0, "at": [-1.5, 0]}}
+    chain = {"kind": "chain", "through": ["front", [0, 0], "back"], "density": 1.2}
+    with pytest.raises(NotApplicable) as refused:
+        assembled(sketch(ends, [chain]))
+    assert refused.value.path == ("assemble",)
+
+
 def test_refused_places_name_the_nearest_that_fit() -> None:
     with pytest.raises(InvalidParameter) as refused:
         solve_scene(read({"gravity": [0, -9.81], "bodies": {"bob": BOB}, "connections": [ROD]}))
