@@ -52,12 +52,6 @@ class PolarVector(Request):
     )
 
 
-class AssembledBodies(Request):
-    """Which bodies may be moved so that the connections are satisfied."""
-
-    nearest: list[str] = Field(min_length=1, description="Names of bodies.")
-
-
 def _form(hint: Any) -> Any:
     """Return a type of the language as the form of a question shows it: without the numbers that only Python has."""
     origin, parts = get_origin(hint), get_args(hint)
@@ -126,7 +120,7 @@ Gravity: Any = _by_core(get_type_hints(Scene)["gravity"])
 WrittenNumber: Any = _by_core(Number)
 NamedNumbers: Any = _by_core(get_type_hints(Scene)["let"])
 ConnectionReadByCore: Any = _by_core(SceneConnection)
-Assemble: Any = Annotated.__class_getitem__((Literal["nearest"] | AssembledBodies | None, SkipValidation()))  # type: ignore[attr-defined, type-arg]
+Assemble: Any = _by_core(get_type_hints(Scene)["assemble"])
 SCENE_FIELDS = tuple(entry.name for entry in fields(Scene))
 
 
@@ -193,7 +187,7 @@ class SceneDescription(Request):
     assemble: Assemble = Field(
         default=None,
         description="nearest: places and velocities are a sketch, in place of which the nearest are taken that satisfy "
-        "the connections; the answer has them in `assembly`. With names, these bodies alone are moved.",
+        'the connections; the answer has them in `assembly`. {"nearest": [names]} moves these bodies alone.',
     )
 
     def with_digits(self, document: Any) -> Self:

@@ -912,7 +912,7 @@ class SceneDescription(TypedDict):
     connections: NotRequired[Sequence[SceneConnection]]
     let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
     numbers: NotRequired[Literal["decimals", "doubles"]]
-    assemble: NotRequired[Literal["nearest"] | AssembledBodies | None]
+    assemble: NotRequired[Mapping[str, Sequence[str]] | Literal["nearest"]]
 
 
 class AngleInDegrees(TypedDict):
@@ -1025,12 +1025,6 @@ class SceneConnection(_SceneConnection):
         "torque",
         "field",
     ]
-
-
-class AssembledBodies(TypedDict):
-    """Which bodies may be moved so that the connections are satisfied."""
-
-    nearest: Sequence[str]
 
 
 class UnwindingShafts(TypedDict):
@@ -1456,7 +1450,7 @@ class DescribedSceneRequest(TypedDict):
     connections: NotRequired[Sequence[SceneConnection]]
     let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
     numbers: NotRequired[Literal["decimals", "doubles"]]
-    assemble: NotRequired[Literal["nearest"] | AssembledBodies | None]
+    assemble: NotRequired[Mapping[str, Sequence[str]] | Literal["nearest"]]
     times: NotRequired[Span | Numbers | None]
     accuracy: NotRequired[float]
     method: NotRequired[
@@ -2305,7 +2299,7 @@ class CertifiedSceneRequest(TypedDict):
     connections: NotRequired[Sequence[SceneConnection]]
     let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
     numbers: NotRequired[Literal["decimals", "doubles"]]
-    assemble: NotRequired[Literal["nearest"] | AssembledBodies | None]
+    assemble: NotRequired[Mapping[str, Sequence[str]] | Literal["nearest"]]
     times: NotRequired[DecimalSpan | Sequence[float | str] | None]
     outputs: NotRequired[Sequence[Literal["accelerations", "forces", "energy", "trajectory"]] | None]
     digits: int
