@@ -266,14 +266,34 @@ def _along_a_line(values: Floats, operation: Integers) -> int:
 
 
 @kernel()
+def _vanishes(values: Floats, o: int) -> bool:
+    """Return whether all coefficients of an operation are zero."""
+    k, known = 0, values.shape[1] - 2
+    while k < known and values[o, k, 0] == 0.0:
+        k += 1
+    return bool(k == known)
+
+
+@kernel()
+def _begins_later(values: Floats, o: int, a: int, b: int) -> bool:
+    """Return whether a product of two series that do not vanish has no coefficient yet."""
+    return _vanishes(values, o) and not _vanishes(values, a) and not _vanishes(values, b)
+
+
+@kernel()
 def until_zero(laws: PackedLaws, values: Floats, h: float, course: Floats) -> float:
     """Return the part of a step up to the first zero of a length along a line, where it has a corner; else the step.
+
+    It is not a number where a product begins beyond the order of the series, which then says nothing of it.
 
     The marks of lengths in `course` are set where they are zero at the end of that part, and removed elsewhere.
     """
     best = h
     for o in range(laws.operations.shape[0]):
-        if laws.operations[o, 0] != LENGTH:
+        operation = laws.operations[o]
+        if operation[0] == MULTIPLY and _begins_later(values, o, operation[1], operation[2]):
+            return math.nan
+        if operation[0] != LENGTH:
             continue
         course[1 + o] = 0.0
         part = _along_a_line(values, laws.operations[o])

@@ -114,9 +114,16 @@ def step_size(q: Floats, group: Integers, tolerance: float) -> float:
                 zeroth = max(zeroth, abs(q[i, 0]))
                 first = max(first, abs(q[i, 1]))
                 second = max(second, abs(q[i, 2]))
+        top = order
+        # A force that begins as a high power of time leaves gaps between the powers: then the highest one counts.
+        while last == 0.0 and before == 0.0 and top > 3:
+            top -= 1
+            for i in range(n):
+                if group[i] == g:
+                    last = max(last, abs(q[i, top]))
         # The logarithms of sizes and scales; that of zero is minus infinity.
         rate, gain = math.log(first), math.log(second)
-        for power, number in ((order, last), (order - 1, before)):
+        for power, number in ((top, last), (order - 1, before)):
             if number > 0.0:
                 size = math.log(number)
                 scale = 0.0 if g == 2 else math.log(zeroth)
@@ -252,6 +259,8 @@ def advance(
             h = left
         if table.laws.operations.shape[0] > 0:
             h = until_zero(table.laws, products.laws, h, products.course)
+            if not abs(h) >= 0.0:
+                return LOST, step
         for b in range(0, n, WIDTH):
             moved, rate, by = alike(0.0), alike(0.0), alike(h)
             for k in range(order, 2, -1):

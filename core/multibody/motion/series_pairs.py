@@ -266,6 +266,8 @@ def advance_pairs(
             h = left
         if table.laws.operations.shape[0] > 0:
             h = until_zero(table.laws, products.laws, h, products.course)
+            if not abs(h) >= 0.0:
+                return LOST, step
         _moved(path, size, h, moved)
         for i in range(n):
             q[i, 0], q[i, 1] = moved[0, 0, i], moved[0, 1, i]
