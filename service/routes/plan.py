@@ -142,7 +142,7 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
     return PostRoute(
         "/v1/plan",
         "plan",
-        "Model, method, cost, error and faults of any request, without running it",
+        "What is known beforehand of any request: model, method, cost, error and faults",
         "accuracy",
         PlanRequest,
         PlanAnswer,

@@ -31,7 +31,7 @@ def test_every_endpoint_has_extremes() -> None:
 
 @every_endpoint
 def test_it_gives_a_finite_answer_or_a_reason_and_plans_say_the_same(path: str) -> None:
-    """Every question is asked, and planned without running it.
+    """Every question is asked, and planned.
 
     `ask` lets no other exception pass, and nothing that is not finite.
     """

@@ -124,7 +124,9 @@ OPERATIONS: Mapping[str, Operation] = {
         "/v1/certified/scenes",
         "A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven",
     ),
-    "plan": Operation("POST", "/v1/plan", "Model, method, cost, error and faults of any request, without running it"),
+    "plan": Operation(
+        "POST", "/v1/plan", "What is known beforehand of any request: model, method, cost, error and faults"
+    ),
     "assess": Operation(
         "POST",
         "/v1/assessments",
@@ -376,7 +378,7 @@ class Operations(ABC):
         return found
 
     def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
-        """Model, method, cost, error and faults of any request, without running it."""
+        """What is known beforehand of any request: model, method, cost, error and faults."""
         found: documents.PlanAnswer = self._ask("plan", question, None)
         return found
 
@@ -706,7 +708,7 @@ class AsyncOperations(ABC):
         return found
 
     async def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
-        """Model, method, cost, error and faults of any request, without running it."""
+        """What is known beforehand of any request: model, method, cost, error and faults."""
         found: documents.PlanAnswer = await self._ask("plan", question, None)
         return found
 
