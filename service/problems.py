@@ -12,7 +12,9 @@ from typing import Any
 import orjson
 
 from core import errors
+from core.assessment.feedback.entry_fault import EntryFault
 from core.errors import pointer_of
+from core.formulas import UnknownName
 
 MEDIA_TYPE = "application/problem+json"
 MOST_FAULTS = 20
@@ -206,6 +208,8 @@ MECHANICS: Mapping[type[errors.MechanicsError], str] = {
     errors.InvalidParameter: "invalid-parameter",
     errors.SlackAtStart: "invalid-parameter",
     errors.PlacesDisagree: "invalid-parameter",
+    UnknownName: "invalid-parameter",
+    EntryFault: "invalid-parameter",
     errors.UnphysicalInertia: "unphysical-inertia",
     errors.OpenMesh: "open-mesh",
     errors.NotApplicable: "not-applicable",

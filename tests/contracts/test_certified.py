@@ -136,7 +136,8 @@ def test_certified_numbers_are_the_doubles_with_more_digits(path: str, question:
         elif path.endswith("stability") and name == "equilibria":
             for found, wanted in zip(many[name], few[name], strict=True):
                 if few["symmetry"] in ("oblate", "prolate", "spherical") and oblique:
-                    found, wanted = found | {"axis": None}, wanted | {"axis": None}
+                    errors = {name: bound for name, bound in wanted["errors"].items() if name != "axis"}
+                    found, wanted = found | {"axis": None}, wanted | {"axis": None, "errors": errors}
                 compare(found, wanted, error, name)
         else:
             compare(many[name], few[name], error, name)

@@ -71,6 +71,7 @@ def _case(name: str, moments: Triple, rates: Triple, horizon: float = 3.0) -> Ca
     return Case(name, moments, rates, (far[0], -unit * rng.random(), 0.0, horizon * unit, far[1], unit * rng.random()))
 
 
+@mp.workdps(30)
 def _about_a_flip(motion: Moving, time: float, offset: float) -> float:
     """Return the time of the flip nearest to `time`, and so much phase later.
 

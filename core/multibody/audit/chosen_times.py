@@ -109,6 +109,7 @@ def _window(random: Random, first: float, last: float, rate: float) -> tuple[flo
     middle = random.uniform(first + half * (1.0 + 1e-6), last - half * (1.0 + 1e-6))
     # A power of two, and a multiple of its share: the times of the samples are doubles.
     half = ldexp(1.0, frexp(half)[1] - 1)
-    middle = round(middle / half * GRID) * (half / GRID)
     # Times of doubles are too coarse where the window is next to nothing beside them.
-    return (middle, half) if half > 2.0**-26 * max(abs(first), abs(last)) else None
+    if not half > 2.0**-26 * max(abs(first), abs(last)):
+        return None
+    return round(middle / half * GRID) * (half / GRID), half

@@ -113,7 +113,7 @@ class Numerals:
         for name, number in let.items():
             if not is_name(name):
                 raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
-            if isinstance(number, str) and _is_of_motion(number, found):
+            if isinstance(number, str) and _is_of_motion(number, found, let):
                 found.formulas[name] = number
                 continue
             circle = _circle(name, let)
@@ -194,11 +194,11 @@ class Numerals:
         return tuple(self.number(entry, (*path, i)) for i, entry in enumerate(value))
 
 
-def _is_of_motion(text: str, numerals: Numerals) -> bool:
+def _is_of_motion(text: str, numerals: Numerals, let: Mapping[str, object]) -> bool:
     """Return whether a formula in `let` has names of the motion, or of others that have."""
     unknown = names_in(text) - {*numerals.let, *NAMES_OF_FUNCTIONS, "pi"}
     return bool(unknown) and all(
-        "." in name or name in NAMES_OF_MOTION or name in numerals.formulas for name in unknown
+        "." in name or (name in NAMES_OF_MOTION and name not in let) or name in numerals.formulas for name in unknown
     )
 
 

@@ -89,8 +89,10 @@ class _Part:
         both = replace(self.along, end=until).extremes()
         error = self.along.sampler(np.array([one.time for one in both])).error
         times = [nearest(self.stretch.start + arb(one.time)) for one in both]
-        # From the start of the scene a time is not rounded.
-        share = 0.0 if is_zero(self.stretch.start) else 2.0**-52
+        # From the start of the scene a time is not rounded, but for the end of the stretch.
+        extent = self.stretch.extent
+        whole = is_zero(self.stretch.start) and (self.period is not None or is_zero(extent - arb(until)))
+        share = 0.0 if whole else 2.0**-52
         late = [one.error + self.stretch.late + share * time for one, time in zip(both, times, strict=True)]
         return SceneExtremes(
             quantity,

@@ -508,7 +508,7 @@ def require_same(answer: SceneSolution, other: SceneSolution) -> float:
             values = values * [-1, 1]
         elif name.endswith(".angle") and "rod" in name:
             values = np.pi - values
-        elif column.unit.startswith("rad") or name.endswith(".friction") or name in ("h.x", "stop.torque"):
+        elif column.unit.startswith("rad") or name.endswith((".friction", ".moment")) or name in ("h.x", "stop.torque"):
             values = -values
         if name in ("stop.torque",) or name.endswith(".friction"):
             # Signs of slip depend on the direction of the face.

@@ -25,10 +25,8 @@ from service.execution.cost_model import (
     CalibratedCost,
     calibration,
     effort,
-    error_of,
     evaluations,
     extent,
-    extreme,
     farthest,
     numbers,
     one,
@@ -133,7 +131,9 @@ class TestQuestions:
         for shown in route.examples.values():
             asked = ANSWERING.read(route, json.dumps(shown.question).encode())
             seconds = route.price(asked, Budget())
-            assert 0.0 < seconds < inf
+            # A plan is limited by its slice of time, whatever it plans.
+            assert 0.0 <= seconds < inf
+            assert (seconds > 0.0) != (route.in_short != ())
 
     @pytest.mark.parametrize(
         "route",
@@ -191,13 +191,12 @@ class TestMethods:
 
     @given(pairs(), TIMES, SPEED, SPEED)
     @settings(deadline=None, derandomize=True)
-    def test_a_faster_rotation_never_costs_less_nor_is_righter(
+    def test_a_faster_rotation_never_costs_less(
         self, methods: tuple[Any, Any], times: Any, one_speed: float, other: float
     ) -> None:
         slow, fast = sorted((one_speed, other))
         for method in methods:
             assert evaluations(method, times, slow) <= evaluations(method, times, fast)
-            assert error_of(method, times, slow) <= error_of(method, times, fast)
 
     @pytest.mark.parametrize("method", [None, METHODS["closed-form"]()])
     def test_the_closed_form_evaluates_nothing(self, method: Any) -> None:
@@ -413,12 +412,11 @@ class TestTimes:
     @given(st.lists(ORDINARY, min_size=1, max_size=8))
     @settings(derandomize=True)
     def test_extents_are_measured_from_the_start(self, times: list[float]) -> None:
-        assert farthest(times) == abs(extreme(times)) == np.abs(times).max()
-        assert extreme(times) in times
+        assert farthest(times) == np.abs(times).max()
         assert extent(times) == max([*times, 0.0]) - min([*times, 0.0])
         span = Span(start=times[0], stop=times[-1], count=3)
         ends = [times[0], times[-1]]
-        for measure in (farthest, extreme, extent):
+        for measure in (farthest, extent):
             assert measure(span) == measure(ends)
             # As numpy.linspace has it, one time is the start.
             assert measure(Span(start=times[0], stop=times[-1], count=1)) == measure(times[:1])
