@@ -257,7 +257,7 @@ def _advance(
         for i in range(series.shape[1]):
             for k in range(series.shape[2]):
                 series[step, i, k, 0], series[step, i, k, 1] = c[3 + i, k, 0], c[3 + i, k, 1]
-        h = way * step_size(c[:, :, 0], group, tolerance)
+        h = way * step_size(c[:, :, 0], group, tolerance, c.shape[1] - 1)
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return LOST, step
         if abs(h) >= abs(left):

@@ -101,8 +101,20 @@ def _first_motion(q: Floats, group: Integers, which: int) -> tuple[int, float]:
 
 
 @kernel()
-def step_size(q: Floats, group: Integers, tolerance: float) -> float:
-    """Return the step at which the last terms of the series are `tolerance` of what they are added to."""
+def lowest_bound(laws: int, order: int) -> int:
+    """Return the lowest power by which a step is bounded: with laws by formula there may be gaps between the powers.
+
+    Without them a series whose last coefficients vanish is a polynomial, which bounds no step.
+    """
+    return 3 if laws > 0 else order
+
+
+@kernel()
+def step_size(q: Floats, group: Integers, tolerance: float, lowest: int) -> float:
+    """Return the step at which the last terms of the series are `tolerance` of what they are added to.
+
+    Where the last two coefficients vanish, the highest one counts that does not, down to the power `lowest`.
+    """
     n, order = q.shape[0], q.shape[1] - 1
     best = np.inf
     for g in range(4):
@@ -115,8 +127,7 @@ def step_size(q: Floats, group: Integers, tolerance: float) -> float:
                 first = max(first, abs(q[i, 1]))
                 second = max(second, abs(q[i, 2]))
         top = order
-        # A force that begins as a high power of time leaves gaps between the powers: then the highest one counts.
-        while last == 0.0 and before == 0.0 and top > 3:
+        while last == 0.0 and before == 0.0 and top > lowest:
             top -= 1
             for i in range(n):
                 if group[i] == g:
@@ -252,7 +263,7 @@ def advance(
         for k in range(order + 1):
             for i in range(n):
                 c[i, k] = path[k * size + i]
-        h = way * step_size(c, table.group, tolerance)
+        h = way * step_size(c, table.group, tolerance, lowest_bound(table.laws.operations.shape[0], order))
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return (SINGULAR if abs(h) >= 0.0 else LOST), step
         if abs(h) >= abs(left):

@@ -21,7 +21,7 @@ from core.multibody.equations.packed import Packed
 from core.multibody.equations.saddle import CORRECTED, FAILED, Saddle, inverted_pairs, padded, saddle_space
 from core.multibody.laws.kernel import PackedLaws, until_zero, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread_pairs, started, summed_pairs
-from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, SINGULAR, coefficients, step_size
+from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, SINGULAR, coefficients, lowest_bound, step_size
 
 LAST_DIGITS = 43.0
 """Bits of the coefficients of highest order for which doubles suffice: ten less than they have."""
@@ -259,7 +259,7 @@ def advance_pairs(
         if not np.all(np.isfinite(c[:, order, 0])):
             # Beside a collision the last coefficients overflow before the step is too short.
             return (SINGULAR if np.all(np.isfinite(c[:, 2, 0])) else LOST), step
-        h = way * step_size(c[:, :, 0], table.group, tolerance)
+        h = way * step_size(c[:, :, 0], table.group, tolerance, lowest_bound(table.laws.operations.shape[0], order))
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return (SINGULAR if abs(h) >= 0.0 else LOST), step
         if abs(h) >= abs(left):

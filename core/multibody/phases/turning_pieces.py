@@ -11,7 +11,7 @@ from flint import arb
 from core.arrays import Floats
 from core.multibody.equations.expansion import expansion
 from core.multibody.equations.packed import GROUPS, pair, two_to
-from core.multibody.motion.series import step_size
+from core.multibody.motion.series import lowest_bound, step_size
 from core.multibody.motion.whole import Whole
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.search.pieces import COEFFICIENTS, Pieces
@@ -45,7 +45,8 @@ class ExpandedInBalls:
         for s in range(len(times)):
             places_now, rates_now = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
             motion = expansion(replace(table, q=places_now, v=rates_now), ORDER, turning.chosen)
-            step = step_size(np.array([[float(x) for x in series] for series in motion.places]), group, TOLERANCE)
+            coefficients = np.array([[float(x) for x in places] for places in motion.places])
+            step = step_size(coefficients, group, TOLERANCE, lowest_bound(len(table.laws), ORDER))
             natural[s], exponent = step, math.ceil(math.log2(reach[s]))
             if step < reach[s]:
                 exponent = math.floor(math.log2(step))

@@ -17,7 +17,7 @@ from core.multibody.equations.packed import Packed
 from core.multibody.equations.saddle import FAILED, Saddle, inverted_pairs, saddle_space
 from core.multibody.laws.kernel import until_zero
 from core.multibody.motion.products import Products, products_of, started
-from core.multibody.motion.series import step_size
+from core.multibody.motion.series import lowest_bound, step_size
 from core.multibody.motion.series_pairs import coefficients_pairs, entries_of_lines_pairs
 
 ORDER = 22
@@ -43,7 +43,7 @@ def _to_corner(table: Packed, space: Saddle, products: Products, own: Floats, st
         for i in range(n):
             for k in range(order + 1):
                 own[i, k] = path[0, k * size + i]
-        step = step_size(own, table.group, TOLERANCE)
+        step = step_size(own, table.group, TOLERANCE, lowest_bound(table.laws.operations.shape[0], own.shape[1] - 1))
         found = abs(until_zero(table.laws, products.laws, course[0] * step, course))
     course[1:] = 0.0
     return min(step, found)
@@ -98,7 +98,7 @@ def expand(
         for i in range(n):
             for k in range(order + 1):
                 own[i, k] = path[0, k * size + i]
-        step = step_size(own, table.group, TOLERANCE)
+        step = step_size(own, table.group, TOLERANCE, lowest_bound(table.laws.operations.shape[0], own.shape[1] - 1))
         if table.laws.operations.shape[0] > 0:
             step = _to_corner(table, space, products, own, step)
         if not step > 0.0:
