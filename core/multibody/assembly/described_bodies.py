@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from math import floor, log10
 
 from flint import arb
 
@@ -107,8 +108,8 @@ def axis_after(axis: Sequence[Ball], frame: Frame | None, before: Sequence[Ball]
 
 def rounded(ball: Ball, extent: float, kept: int = DIGITS) -> Number:
     """Return a number to some digits beside a size: what is exact is found to be."""
-    size = arb(extent)
-    digits = kept - _whole((size.log() / arb(10).log()).floor())
+    # A digit more or less does no harm, where the size is a power of ten.
+    digits = kept - floor(log10(extent))
     power = arb(10) ** abs(digits)
     scaled = ball.mid() * power if digits >= 0 else ball.mid() / power
     whole = _whole((scaled.mid() + arb("0.5")).mid().floor())

@@ -227,3 +227,11 @@ def test_a_range_of_rest_is_that_of_the_places_that_are_found() -> None:
     assert found is not None
     assert found[0].lower is not None
     assert found[0].lower.value == pytest.approx(1 / (2 * math.tan(math.pi - angle)), rel=1e-12)
+
+
+@pytest.mark.parametrize("size", ["0.001", "1", "10", "1000"])
+def test_a_sketch_whose_size_is_a_power_of_ten_is_assembled(size: str) -> None:
+    rod = {"kind": "rod", "a": "p", "b": [0, 0], "length": 1}
+    bodies = {"p": {"mass": 1, "at": ["0.6*1.1", "-0.8*1.1"]}, "far": {"mass": 1, "at": [size, 0]}}
+    place = assembly_of(sketch(bodies, [rod])).bodies["p"].at
+    assert [float(x) for x in place] == pytest.approx([0.6, -0.8], abs=1e-15)
