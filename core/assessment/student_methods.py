@@ -97,18 +97,15 @@ class SemiImplicitEuler(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: float
     kind: str = "semi-implicit-euler"
 
     order: ClassVar[int] = 1
+    compiled: ClassVar[Any] = staticmethod(_advance_in_turn)
     family: ClassVar[Family] = "explicit"
     work_vectors: ClassVar[int] = 1
 
     def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return int(system.initial_state.size)
-
-    def _compiled(self) -> Any:
-        return _advance_in_turn
 
 
 @dataclass(frozen=True)
@@ -121,18 +118,13 @@ class ExplicitMidpoint(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: float
     kind: str = "explicit-midpoint"
 
     order: ClassVar[int] = 2
+    compiled: ClassVar[Any] = staticmethod(_advance_by_midpoint)
+    evaluations: ClassVar[int] = 2
     family: ClassVar[Family] = "explicit"
     work_vectors: ClassVar[int] = 2
-
-    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
-        return 2
-
-    def _compiled(self) -> Any:
-        return _advance_by_midpoint
 
 
 @dataclass(frozen=True)
@@ -145,15 +137,10 @@ class Heun(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: float
     kind: str = "heun"
 
     order: ClassVar[int] = 2
+    compiled: ClassVar[Any] = staticmethod(_advance_by_mean_slope)
+    evaluations: ClassVar[int] = 2
     family: ClassVar[Family] = "explicit"
     work_vectors: ClassVar[int] = 3
-
-    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
-        return 2
-
-    def _compiled(self) -> Any:
-        return _advance_by_mean_slope

@@ -7,7 +7,6 @@ from typing import ClassVar, Literal
 
 from core.arrays import Floats
 from core.errors import NotApplicable
-from core.quantities import check
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Family, Integration
 from core.systems.system import InitialValueProblem
@@ -29,9 +28,6 @@ class ClosedFormEvaluation(AbstractMethod):
         "Always, where a closed form exists: it is accurate to the last digit at any time and faster than every "
         "integrator that reaches an error of 1e-3."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
 
     def integrate(self, system: InitialValueProblem, times: Floats, budget: Budget | None = None) -> Integration:
         """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""

@@ -19,7 +19,6 @@ from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import two_sum
 from core.errors import NotApplicable
-from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
 from core.systems.system import DISCRETE_STEP, InitialValueProblem
@@ -57,10 +56,10 @@ class DiscreteMoserVeselov(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: Duration
     kind: Literal["discrete-moser-veselov"] = "discrete-moser-veselov"
 
     order: ClassVar[int] = 2
+    compiled: ClassVar[Any] = staticmethod(_advance)
     work_vectors: ClassVar[int] = 1
     family: ClassVar[Family] = "structure-preserving"
     preserves: ClassVar[tuple[Invariance, ...]] = ("every first integral", "time symmetry")
@@ -68,16 +67,6 @@ class DiscreteMoserVeselov(FixedStep):
         "To stay on the true polhode to round-off for ever: energy and angular momentum are both kept, and all of the "
         "error is in the phase, which is of second order."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
-        self._law(system)
-        return 1
-
-    def _compiled(self) -> Any:
-        return _advance
 
     def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
         return np.stack([start, np.zeros_like(start)]), 0

@@ -20,7 +20,7 @@ E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -30,11 +30,11 @@ from core.arrays import Floats, Integers
 from core.compiled import entry, kernel
 from core.double_double import two_sum
 from core.errors import InvalidParameter
-from core.quantities import Quantity, check
+from core.quantities import Quantity
 from core.systems.methods.dormand_prince_tableau import ERROR_3 as E3
 from core.systems.methods.dormand_prince_tableau import ERROR_5 as E5
 from core.systems.methods.dormand_prince_tableau import INTERPOLANT, STAGES, A, B, C
-from core.systems.methods.method import PROJECTED, Family, Leg, Marching, Units
+from core.systems.methods.method import PROJECTED, Family, Leg, StepChoosing, Units
 from core.systems.system import PROJECTION, VECTOR_FIELD, InitialValueProblem, unconstrained
 
 SMALLEST_TOLERANCE = 1e-16
@@ -242,7 +242,7 @@ def _march(
 
 
 @dataclass(frozen=True)
-class DormandPrince853(Marching):
+class DormandPrince853(StepChoosing):
     """Dormand and Prince's method of order 8(5,3).
 
     Parameters
@@ -257,7 +257,7 @@ class DormandPrince853(Marching):
 
     order: ClassVar[int] = 8
     family: ClassVar[Family] = "explicit"
-    setting: ClassVar[str] = "tolerance"
+    smallest: ClassVar[float] = SMALLEST_TOLERANCE
     between_steps: ClassVar[str] = (
         "By the method's own interpolant of order seven, at three further evaluations in every step with a sample. "
         "The steps do not depend on the samples; only the last one ends at the farthest."
@@ -267,19 +267,6 @@ class DormandPrince853(Marching):
         "The default where there is no closed form: smooth motions to errors from 1e-4 down to 1e-13, with as many "
         "samples as wanted at little extra cost."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def finer(self) -> DormandPrince853 | None:
-        """Return the same method with a sixteenth of the tolerance, None where a quarter cannot be had."""
-        if self.tolerance < 4 * SMALLEST_TOLERANCE:
-            return None
-        return replace(self, tolerance=max(self.tolerance / 16, SMALLEST_TOLERANCE))
-
-    def coarser(self) -> DormandPrince853 | None:
-        """Return the same method with sixteen times the tolerance, None where that says nothing any more."""
-        return replace(self, tolerance=self.tolerance * 16) if self.tolerance < 1 / 16 else None
 
     def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         samples = np.empty((targets.size, start.size))

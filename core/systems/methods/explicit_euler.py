@@ -7,10 +7,9 @@ from typing import Any, ClassVar, Literal
 
 from core.arrays import Floats, Integers
 from core.compiled import kernel
-from core.quantities import Duration, check
 from core.systems.methods.fixed_step import ONE_STEP, FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family
-from core.systems.system import VECTOR_FIELD, InitialValueProblem
+from core.systems.system import VECTOR_FIELD
 
 
 @kernel(steps_by(VECTOR_FIELD))
@@ -46,10 +45,10 @@ class ExplicitEuler(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: Duration
     kind: Literal["explicit-euler"] = "explicit-euler"
 
     order: ClassVar[int] = 1
+    compiled: ClassVar[Any] = staticmethod(_advance)
     work_vectors: ClassVar[int] = 1
     family: ClassVar[Family] = "explicit"
     between_steps: ClassVar[str] = ONE_STEP + " For this method that is the straight line to the next grid point."
@@ -58,12 +57,3 @@ class ExplicitEuler(FixedStep):
         "To see what the simplest first-order method does: on a free body its energy grows at "
         "every step, and ten times less error costs ten times more steps."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
-        return 1
-
-    def _compiled(self) -> Any:
-        return _advance

@@ -17,7 +17,7 @@ E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -159,18 +159,29 @@ ONE_STEP = (
 """How these methods sample between the points of their grid."""
 
 
+@dataclass(frozen=True)
 class FixedStep(Marching):
     """Base of the methods with a fixed step.
 
     A subclass gives its compiled steps and the evaluations that each step needs at least; the base lays out the steps,
     refuses what is over the budget before running it, and counts.
+
+    Attributes
+    ----------
+    compiled : callable
+        The compiled steps, to be called as `steps_by` says.
+    evaluations : int
+        What every step needs, as long as iterations need no more.
+    work_vectors : int
+        How many vectors of the state's size a step needs as scratch.
     """
 
     step: Duration
     setting: ClassVar[str] = "step"
     between_steps: ClassVar[str] = ONE_STEP
+    compiled: ClassVar[Any]
+    evaluations: ClassVar[int] = 1
     work_vectors: ClassVar[int] = 0
-    """How many vectors of the state's size a step needs as scratch."""
 
     @property
     def grid_step(self) -> float:
@@ -185,13 +196,9 @@ class FixedStep(Marching):
         """
         return Halved(self)
 
-    @abstractmethod
     def _evaluations_per_step(self, system: InitialValueProblem) -> int:
-        """Return the evaluations that every step needs, as long as iterations need no more."""
-
-    @abstractmethod
-    def _compiled(self) -> Any:
-        """Return the compiled steps, to be called as `steps_by` says."""
+        """Return `evaluations`, unless they depend on the system."""
+        return self.evaluations
 
     def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
         """Return what the first step starts from, with the state as its first row, and the evaluations it took."""
@@ -216,6 +223,7 @@ class FixedStep(Marching):
         """March as `_march` does, with every step divided into `parts`."""
         shape = (targets.size, 2)
         begin, length, count = np.empty(shape), np.empty(shape), np.empty(shape, np.int64)
+        law = self._law(system)
         total = lay_out(targets, units.duration(self.step), parts, begin, length, count)
         each = self._evaluations_per_step(system)
         if total * each > limit:
@@ -223,12 +231,11 @@ class FixedStep(Marching):
         declared = int(total) * each
         samples = np.empty((targets.size, start.size))
         projection = system.structure.projection
-        advance, law = self._compiled(), self._law(system)
         carried, spent = self._carried(system, start)
         work = np.empty((self.work_vectors, start.size))
         tally = np.array([limit - declared - spent, each, projection is not unconstrained, 0])
         reached = _march(
-            advance, law, projection, begin, length, count, carried, work, system.parameters, samples, tally
+            self.compiled, law, projection, begin, length, count, carried, work, system.parameters, samples, tally
         )
         if tally[3]:
             time = units.given_time(float(targets[reached]))

@@ -12,16 +12,16 @@ from __future__ import annotations
 
 import math
 import warnings
-from abc import abstractmethod
-from dataclasses import replace
-from typing import Annotated, Any, ClassVar, Self
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from core.arrays import Floats
 from core.errors import InvalidParameter
 from core.quantities import Quantity
-from core.systems.methods.method import Leg, Marching, Units
+from core.systems.methods.method import Leg, StepChoosing, Units
 from core.systems.system import InitialValueProblem
 
 SMALLEST_TOLERANCE = 2.3e-14
@@ -51,31 +51,22 @@ class _Scaled:
         return slope * self.horizon / self.size
 
 
-class FromSciPy(Marching):
+@dataclass(frozen=True)
+class FromSciPy(StepChoosing):
     """Base of the methods that are classes of `scipy.integrate`.
 
     SciPy does not tell how many steps were rejected, so none are counted; their evaluations are.
+
+    Attributes
+    ----------
+    solver : str
+        Name of the class, a subclass of `scipy.integrate.OdeSolver`.
     """
 
     tolerance: SciPyTolerance
-    setting: ClassVar[str] = "tolerance"
+    smallest: ClassVar[float] = SMALLEST_TOLERANCE
+    solver: ClassVar[str]
     on_constraints: ClassVar[str] = "Samples alone are projected: between them the state drifts off the constraints."
-
-    def finer(self) -> Self | None:
-        """Return the same method with a sixteenth of the tolerance, None where a quarter cannot be had."""
-        if self.tolerance < 4 * SMALLEST_TOLERANCE:
-            return None
-        return replace(self, tolerance=max(self.tolerance / 16, SMALLEST_TOLERANCE))  # type: ignore[type-var]
-
-    def coarser(self) -> Self | None:
-        """Return the same method with sixteen times the tolerance, None where that says nothing any more."""
-        if self.tolerance >= 1 / 16:
-            return None
-        return replace(self, tolerance=self.tolerance * 16)  # type: ignore[type-var]
-
-    @abstractmethod
-    def _solver(self) -> Any:
-        """Import and return SciPy's class, a subclass of `scipy.integrate.OdeSolver`."""
 
     def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         horizon = _power_of_two(abs(float(targets[-1])))
@@ -89,7 +80,7 @@ class FromSciPy(Marching):
             with warnings.catch_warnings(), np.errstate(all="ignore"):
                 # What fails is told by the status; SciPy's words for it would go to the process's standard error.
                 warnings.simplefilter("ignore")
-                solver = self._solver()(
+                solver = getattr(import_module("scipy.integrate"), self.solver)(
                     equation, 0.0, start / size, float(scaled[-1]), rtol=self.tolerance, atol=self.tolerance
                 )
                 while sample < targets.size:

@@ -18,7 +18,6 @@ import numpy as np
 from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import two_sum
-from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family, Invariance
 from core.systems.system import VECTOR_FIELD, InitialValueProblem
@@ -81,10 +80,10 @@ class ImplicitMidpoint(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: Duration
     kind: Literal["implicit-midpoint"] = "implicit-midpoint"
 
     order: ClassVar[int] = 2
+    compiled: ClassVar[Any] = staticmethod(_advance)
     work_vectors: ClassVar[int] = 2
     family: ClassVar[Family] = "implicit"
     preserves: ClassVar[tuple[Invariance, ...]] = ("quadratic invariants", "time symmetry")
@@ -93,15 +92,6 @@ class ImplicitMidpoint(FixedStep):
         "For long runs in which energy and angular momentum must not drift at all; the phase still does, in proportion "
         "to the square of the step."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
-        return 1
-
-    def _compiled(self) -> Any:
-        return _advance
 
     def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
         # The slope of the last step is the first guess; for the first step it is the one at the start.

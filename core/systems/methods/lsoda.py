@@ -9,10 +9,9 @@ SIAM Journal on Scientific and Statistical Computing 4 (1983) 136.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
-from core.quantities import check
-from core.systems.methods.from_scipy import FromSciPy, SciPyTolerance
+from core.systems.methods.from_scipy import FromSciPy
 from core.systems.methods.method import Family
 
 
@@ -27,9 +26,9 @@ class Lsoda(FromSciPy):
         component, whichever is more.
     """
 
-    tolerance: SciPyTolerance
     kind: Literal["lsoda"] = "lsoda"
 
+    solver: ClassVar[str] = "LSODA"
     order: ClassVar[None] = None
     family: ClassVar[Family] = "implicit"
     between_steps: ClassVar[str] = (
@@ -38,11 +37,3 @@ class Lsoda(FromSciPy):
     when_to_use: ClassVar[str] = (
         "To compare with what scipy.integrate.odeint gives, or for a motion that may turn stiff on its way."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def _solver(self) -> Any:
-        from scipy.integrate import LSODA
-
-        return LSODA

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 from numba import types
@@ -13,6 +13,7 @@ from numba import types
 from core.arrays import Floats
 from core.compiled import entry
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
+from core.quantities import check
 from core.systems.budget import Budget
 from core.systems.system import PROJECTION, InitialValueProblem, unconstrained
 from core.systems.trajectory import Work
@@ -78,6 +79,9 @@ class AbstractMethod(ABC):
     between_steps: ClassVar[str]
     on_constraints: ClassVar[str] = "Not for systems with constraints."
     when_to_use: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        check(self)
 
     @abstractmethod
     def integrate(self, system: InitialValueProblem, times: Floats, budget: Budget | None = None) -> Integration:
@@ -264,6 +268,30 @@ class Marching(AbstractMethod):
     def _out_of_budget(self, spent: int, limit: int, fraction: float) -> BudgetExceeded:
         """Return the refusal of a run that was stopped after a fraction of the way, with the work it would need."""
         return self._over_budget(spent / fraction if fraction > 0 else 0.0, limit)
+
+
+class StepChoosing(Marching):
+    """Base of the methods that choose their steps by a tolerance.
+
+    Attributes
+    ----------
+    smallest : float
+        The smallest tolerance that is admissible.
+    """
+
+    tolerance: float
+    setting: ClassVar[str] = "tolerance"
+    smallest: ClassVar[float]
+
+    def finer(self) -> Self | None:
+        """Return the same method with a sixteenth of the tolerance, None where a quarter cannot be had."""
+        if self.tolerance < 4 * self.smallest:
+            return None
+        return replace(self, tolerance=max(self.tolerance / 16, self.smallest))  # type: ignore[type-var]
+
+    def coarser(self) -> Self | None:
+        """Return the same method with sixteen times the tolerance, None where that says nothing any more."""
+        return replace(self, tolerance=self.tolerance * 16) if self.tolerance < 1 / 16 else None  # type: ignore[type-var]
 
 
 def _outwards(times: Floats) -> tuple[Floats, np.ndarray[tuple[int], np.dtype[np.intp]] | None]:

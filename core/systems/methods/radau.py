@@ -8,10 +8,9 @@ E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Sprin
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
-from core.quantities import check
-from core.systems.methods.from_scipy import FromSciPy, SciPyTolerance
+from core.systems.methods.from_scipy import FromSciPy
 from core.systems.methods.method import Family
 
 
@@ -26,9 +25,9 @@ class Radau(FromSciPy):
         component, whichever is more.
     """
 
-    tolerance: SciPyTolerance
     kind: Literal["radau"] = "radau"
 
+    solver: ClassVar[str] = "Radau"
     order: ClassVar[int] = 5
     family: ClassVar[Family] = "implicit"
     between_steps: ClassVar[str] = "By the method's own collocation polynomial, an interpolant of order three."
@@ -36,11 +35,3 @@ class Radau(FromSciPy):
         "For stiff motions, where explicit methods would need steps far shorter than anything that is seen; a free "
         "body is not one."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def _solver(self) -> Any:
-        from scipy.integrate import Radau as SciPyRadau
-
-        return SciPyRadau

@@ -13,10 +13,9 @@ from typing import Any, ClassVar, Literal
 
 from core.arrays import Floats, Integers
 from core.compiled import kernel
-from core.quantities import Duration, check
 from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family
-from core.systems.system import VECTOR_FIELD, InitialValueProblem
+from core.systems.system import VECTOR_FIELD
 
 
 @kernel(steps_by(VECTOR_FIELD))
@@ -63,10 +62,11 @@ class RungeKutta4(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: Duration
     kind: Literal["runge-kutta-4"] = "runge-kutta-4"
 
     order: ClassVar[int] = 4
+    compiled: ClassVar[Any] = staticmethod(_advance)
+    evaluations: ClassVar[int] = 4
     work_vectors: ClassVar[int] = 5
     family: ClassVar[Family] = "explicit"
     on_constraints: ClassVar[str] = PROJECTED
@@ -74,12 +74,3 @@ class RungeKutta4(FixedStep):
         "For moderate accuracy (1e-3 to 1e-8) over a few periods at a fixed cost per step, and as the yardstick that "
         "most readers know."
     )
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
-        return 4
-
-    def _compiled(self) -> Any:
-        return _advance

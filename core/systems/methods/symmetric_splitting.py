@@ -15,7 +15,6 @@ from typing import Any, ClassVar, Literal
 from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.errors import NotApplicable
-from core.quantities import Duration, check
 from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
 from core.systems.system import PART_FLOW, InitialValueProblem, Splitting
@@ -55,10 +54,10 @@ class SymmetricSplitting(FixedStep):
         Length of the steps, from t = 0 (s).
     """
 
-    step: Duration
     kind: Literal["symmetric-splitting"] = "symmetric-splitting"
 
     order: ClassVar[int] = 2
+    compiled: ClassVar[Any] = staticmethod(_advance)
     family: ClassVar[Family] = "structure-preserving"
     preserves: ClassVar[tuple[Invariance, ...]] = ("invariants of every part", "time symmetry")
     when_to_use: ClassVar[str] = (
@@ -66,14 +65,8 @@ class SymmetricSplitting(FixedStep):
         "band for ever; it solves no implicit equation, and its phase error is of second order."
     )
 
-    def __post_init__(self) -> None:
-        check(self)
-
     def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2 * self._splitting(system).parts - 1
-
-    def _compiled(self) -> Any:
-        return _advance
 
     def _law(self, system: InitialValueProblem) -> Any:
         return self._splitting(system).flow
