@@ -262,7 +262,7 @@ TESTED_IN |= {
         "contacts/test_impacts": "contacts/impulses phases/accumulation phases/recurring_bounces",
         "audit/test_audit": (
             "audit/balanced audit/chosen_times audit/energy audit/failure audit/laws_at_samples audit/repetition "
-            "audit/samples audit/start audit/windows"
+            "audit/samples audit/start"
         ),
         "audit/test_definitions": (
             "audit/bodies audit/contact_definitions audit/contacts audit/definition audit/definition_of "

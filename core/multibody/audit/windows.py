@@ -111,6 +111,8 @@ class _Quantity:
         Its rate, where the answer has it: that of places.
     known : float
         Error of that rate.
+    rate : int
+        Number of that rate among the velocities and spins.
     """
 
     law: str
@@ -119,6 +121,7 @@ class _Quantity:
     error: float
     expected: Numbers | None = None
     known: float = 0.0
+    rate: int = 0
 
 
 @dataclass(frozen=True)
@@ -178,17 +181,19 @@ def _quantities(samples: Samples, ahead: Placement) -> tuple[list[_Quantity], li
     for name, pose in samples.placement.items():
         twist, (position, attitude, velocity, spinning) = samples.motion[name], samples.errors[name][0].tolist()
         law, spin = "rate of place is spin", None if twist.spin is None else twist.spin.reshape(count, -1)
-        places.append(_Quantity("rate of place is velocity", name, pose.position, position, twist.velocity, velocity))
+        which = len(speeds)
+        moves = "rate of place is velocity"
+        places.append(_Quantity(moves, name, pose.position, position, twist.velocity, velocity, which))
         speeds.append(_Quantity("velocity", name, twist.velocity, velocity))
         if spin is None:
             continue
         speeds.append(_Quantity("spin", name, spin, spinning))
         turned = ahead[name].rotation
         if pose.turn is not None:
-            places.append(_Quantity(law, name, pose.turn[:, None], attitude, spin, spinning))
+            places.append(_Quantity(law, name, pose.turn[:, None], attitude, spin, spinning, which + 1))
         elif turned is not None and name in samples.placed:
             axes = turned.reshape(count, 9)
-            places.append(_Quantity(law, name, axes.real, 2.0 * attitude, axes.imag / STEP, spinning))
+            places.append(_Quantity(law, name, axes.real, 2.0 * attitude, axes.imag / STEP, spinning, which + 1))
     return places, speeds
 
 
@@ -200,6 +205,9 @@ def _check_kinematics(
     off = np.maximum.reduceat(np.abs(found[:, : expected.shape[1]] - expected), own, axis=1)
     size = np.maximum.reduceat(np.abs(expected), own, axis=1)
     allowed = errors[:, : len(places)] + np.array([one.known for one in places]) + ledger.rounding * size
+    # A place has one power of the time more than its rate, and is resolved in a window no better.
+    rates = errors[:, [len(places) + one.rate for one in places]]
+    allowed = np.where(np.isfinite(rates), allowed, np.inf)
     ledger.checked += 1
     within = off <= allowed
     if within.all():
