@@ -60,24 +60,35 @@ FALLING, RISING, OPEN = int(Sign.FALLING), int(Sign.RISING), int(Sign.OPEN)
 
 
 @kernel()
-def _above(coefficients: Floats, band: Floats, left_out: float) -> bool:
-    """Return whether doubles show that a polynomial is above its band between 0 and 1."""
+def one_sign(coefficients: Floats, known: float, size: float) -> int:
+    """Return POSITIVE or NEGATIVE where doubles show that a polynomial is beyond an error from 0 to 1, else UNDECIDED.
+
+    Parameters
+    ----------
+    coefficients : (order + 1,)
+        Of powers of time, lowest first.
+    known : float
+        Its error.
+    size : float
+        Sum of the terms, of which doubles round a share.
+    """
     last = coefficients.shape[0] - 1
     found = np.empty(last + 1)
-    size, known, share = 0.0, left_out, 1.0
+    share = 1.0
     for k in range(last + 1):
         # Divided by binomial coefficients, whose sums by Pascal's scheme are the Bernstein coefficients.
-        found[k] = coefficients[k, 0] / share
+        found[k] = coefficients[k] / share
         share = share * (last - k) / (k + 1.0)
-        size += abs(coefficients[k, 0])
-        known += band[k]
     for r in range(1, last + 1):
         for j in range(last, r - 1, -1):
             found[j] += found[j - 1]
-    lowest = found[0]
+    lowest, highest = found[0], found[0]
     for j in range(1, last + 1):
-        lowest = min(lowest, found[j])
-    return bool(lowest > known + _FILTER * size)
+        lowest, highest = min(lowest, found[j]), max(highest, found[j])
+    known += _FILTER * size
+    if lowest > known:
+        return POSITIVE
+    return NEGATIVE if highest < -known else UNDECIDED
 
 
 @kernel()
@@ -167,8 +178,9 @@ def decided(
         Whether nothing is wanted after the first segment that ends below zero.
     """
     count = coefficients.shape[0]
-    if _above(coefficients, band, left_out):
-        ends[0], signs[0] = 1.0, POSITIVE
+    whole = one_sign(coefficients[:, 0], left_out + np.sum(band), np.sum(np.abs(coefficients[:, 0])))
+    if whole != UNDECIDED:
+        ends[0], signs[0] = 1.0, whole
         return 1
     stack = np.empty((HALVINGS + 2, count, 2))
     ahead = np.empty((HALVINGS + 2, 2))

@@ -12,7 +12,16 @@ import numpy as np
 from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul, dd_mul_d
-from core.multibody.algebra.bernstein import FALLING, MOST_SEGMENTS, NEGATIVE, POSITIVE, RISING, decided, zero_between
+from core.multibody.algebra.bernstein import (
+    FALLING,
+    MOST_SEGMENTS,
+    NEGATIVE,
+    POSITIVE,
+    RISING,
+    decided,
+    one_sign,
+    zero_between,
+)
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.equations.packed import Packed
 from core.multibody.motion.numerical import Run
@@ -85,11 +94,9 @@ def followed(
         ended, count = advance_pairs(arrays, q, v, clock, 1e300, tolerance, chunk_starts, chunk)
         if ended != FULL:
             return None
-        for step in range(count):
-            width = (chunk_starts[step + 1, 0] - chunk_starts[step, 0]) + chunk_starts[step + 1, 1]
-            first = step == 0 and not starts
-            function = (section.origin, section.normal, section.kind)
-            found, sign = _zeros(chunk[step], width, *function, sign, first, zeros)
+        function, step = (section.origin, section.normal, section.kind), 0
+        while step < count:
+            step, found, sign = _next_zeros(chunk_starts, chunk, step, count, *function, sign, not starts, zeros)
             for local in zeros[:found]:
                 end, rate = np.empty_like(q), np.empty_like(v)
                 moved_pairs(chunk[step], local[0], local[1], end, rate)
@@ -99,6 +106,7 @@ def followed(
                     starts.extend([chunk_starts[: step + 1], time[None, :]])
                     series.append(chunk[: step + 1])
                     return Run(np.concatenate(starts), np.concatenate(series)), passages
+            step += 1
         starts.append(chunk_starts[:count])
         series.append(chunk[:count])
     return None
@@ -141,6 +149,70 @@ def _along(series: Floats, origin: Floats, normal: Floats, kind: int, curve: Flo
             sh, sl = dd_mul_d(sh, sl, float(k))
             size *= k
         curve[k - lowest, 0], curve[k - lowest, 1], sizes[k - lowest] = sh, sl, size
+
+
+@kernel()
+def _next_zeros(
+    starts: Floats,
+    series: Floats,
+    step: int,
+    count: int,
+    origin: Floats,
+    normal: Floats,
+    kind: int,
+    sign: float,
+    fresh: bool,
+    times: Floats,
+) -> tuple[int, int, float]:
+    """Go on from a step to the first of `count` in which the sign changes; fill in where, as `_zeros` does.
+
+    Return that step, `count` where there is none, with how often the sign changes and the last sign. The motion starts
+    with step 0 where the steps are `fresh`.
+    """
+    for k in range(step, count):
+        width = (starts[k + 1, 0] - starts[k, 0]) + starts[k + 1, 1]
+        first = fresh and k == 0
+        if first or not _keeps(series[k], width, origin, normal, kind, sign):
+            found, sign = _zeros(series[k], width, origin, normal, kind, sign, first, times)
+            if found > 0:
+                return k, found, sign
+    return count, 0, sign
+
+
+@kernel()
+def _keeps(series: Floats, width: float, origin: Floats, normal: Floats, kind: int, sign: float) -> bool:
+    """Return whether doubles show that the section's function keeps its sign in a step."""
+    n, order = series.shape[0], series.shape[1] - 1
+    curve, sizes = np.zeros(order + 1), np.zeros(order + 1)
+    speed, gain = np.empty(order), np.empty(order - 1)
+    for i in range(n):
+        if normal[i] == 0.0:
+            continue
+        if kind == POWER:
+            for k in range(order):
+                speed[k] = (k + 1.0) * series[i, k + 1, 0]
+            for k in range(order - 1):
+                gain[k] = (k + 1.0) * speed[k + 1]
+            for k in range(order - 1):
+                for a in range(k + 1):
+                    term = speed[a] * gain[k - a]
+                    curve[k] += term
+                    sizes[k] += abs(term)
+        else:
+            lowest = 1 if kind == RATES else 0
+            for k in range(lowest, order + 1):
+                term = series[i, k, 0]
+                sizes[k - lowest] += abs(term * normal[i]) * max(k, 1)
+                if k == lowest:
+                    term = (term - origin[i, 0]) + (series[i, k, 1] - origin[i, 1])
+                curve[k - lowest] += term * normal[i] * (k if kind == RATES else 1)
+    at, size = 1.0, 0.0
+    for k in range(order + 1):
+        curve[k], sizes[k] = curve[k] * at, sizes[k] * at
+        size += sizes[k]
+        at *= width
+    left_out = max(sizes[order], max(sizes[order - 1], sizes[order - 2]) * _LEFT_OUT)
+    return one_sign(curve, left_out + _ROUNDED * size, size) == int(sign)
 
 
 @kernel()
