@@ -48,7 +48,7 @@ def scene_model(found: Modelled, noticed: list[str], multipliers: Multipliers) -
     rank = multipliers.rank
     table = found.described.measures.table
     apart = []
-    for piece, (_, motion) in zip(found.pieces, found.whole.parts, strict=True):
+    for piece, motion in found.moving:
         period = motion.period
         apart.append(
             PartModel(

@@ -108,7 +108,9 @@ def directions(after: Callable[[Direction], Direction | None]) -> list[Direction
         if root is None:
             continue
         there = after(root)
-        if there is not None and there[0] * root[0] + there[1] * root[1] > 0:
+        gain = None if there is None else there[0] * root[0] + there[1] * root[1]
+        # Where friction holds what pushes to the last, the slip grows with a later power of time.
+        if gain is not None and (is_zero(gain) or gain > 0):
             found.append(root)
     return found
 

@@ -21,8 +21,10 @@ from core.multibody.laws.kernel import PackedLaws
 from core.multibody.laws.tape import Tape
 from core.multibody.table.table import Table
 
-GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 4}
+GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 5}
 """Coordinates of one unit share the scale by which steps are chosen."""
+FORCES = 4
+"""The group of multipliers, whose steps are chosen as those of coordinates; a clock, beyond it, bounds none."""
 
 
 class Packed(NamedTuple):
@@ -250,6 +252,7 @@ def _packed_laws(table: Table, units: Units) -> PackedLaws:
         np.array([i for i, _, _ in tape.terms], dtype=np.int64),
         _numbers([x for x, _, _ in push]),
         _indices([(i, output) for _, i, output in push], 2),
+        int(not tape.is_polynomial_in({i for i, unit in enumerate(table.units) if unit == "s"})),
     )
 
 

@@ -50,6 +50,8 @@ class PackedLaws(NamedTuple):
         Slopes of inputs and their coordinates.
     push, push_at : (p, 2) and (p, 2)
         Forces on a coordinate where an operation is one.
+    gaps : int
+        1 where powers of time may be missing between others of their series, 0 for polynomials in time.
     """
 
     operations: Integers
@@ -58,6 +60,7 @@ class PackedLaws(NamedTuple):
     terms_at: Integers
     push: Floats
     push_at: Integers
+    gaps: int
 
 
 @kernel()

@@ -12,7 +12,7 @@ Experimental Mathematics 14 (2005), section 2.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -112,6 +112,17 @@ class Tape:
                 rule = f"be shorter: all formulas together may have {MOST_OPERATIONS} operations"
                 raise InvalidParameter(law.path, rule)
         return tape
+
+    def is_polynomial_in(self, coordinates: Container[int]) -> bool:
+        """Return whether every operation is a polynomial in some coordinates, and depends on nothing else."""
+        for code, _, b, c, _ in self.operations:
+            by_number = code == Op.DIVIDE and self.operations[b][0] == Op.NUMBER
+            if code == Op.PLACE:
+                if not all(i in coordinates for i, _, _ in self.terms[b:c]):
+                    return False
+            elif code not in (Op.NUMBER, Op.ADD, Op.SUBTRACT, Op.MULTIPLY) and not by_number:
+                return False
+        return True
 
     def add(self, code: Op, a: int = 0, b: int = 0, c: int = 0, d: int = 0) -> int:
         """Return the number of an operation, which is added where it is new."""

@@ -84,6 +84,14 @@ class Modelled:
     moved: list[str]
     fitted: list[str]
 
+    @property
+    def moving(self) -> list[tuple[Piece, Motion]]:
+        """The parts that bodies follow: a clock that formulas alone read moves nothing."""
+        table, expressions = self.described.measures.table, self.whole.reduced.expressions
+        followed = {key[0] for e, unit in zip(expressions, table.units, strict=True) if unit != "s" for key in e if key}
+        parts = zip(self.pieces, self.whole.parts, strict=True)
+        return [(piece, motion) for piece, (indices, motion) in parts if followed.intersection(indices)]
+
 
 def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
     """Return the models of a scene, whose numbers may be read in another way; the precision of balls is the caller's.

@@ -24,14 +24,16 @@ from core.compiled import fma, kernel
 from core.double_double import dd_add, dd_add_d, dd_mul, two_prod, two_sum
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
-from core.multibody.equations.packed import Packed
+from core.multibody.equations.packed import FORCES, Packed
 from core.multibody.equations.saddle import Saddle, inverted, saddle_space
 from core.multibody.laws.kernel import until_zero, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread, started, summed
 
 SHORTEST = 1e-12
 """Shortest step, in the table's own unit of time or of the time reached: below it a place is singular."""
-
+EARLY = 6
+"""Highest power by which a motion that begins with it is measured though lower ones are there by rounding: what begins
+to slip under a force that grows begins with the third."""
 
 DONE, FULL, SINGULAR, LOST = 0, 1, 2, 3
 """How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles."""
@@ -88,66 +90,58 @@ def coefficients(table: Packed, space: Saddle, products: Products, since: int) -
 
 
 @kernel()
-def _first_motion(q: Floats, group: Integers, which: int) -> tuple[int, float]:
-    """Return the lowest order with a coefficient of one group that is not zero, and the largest of that order."""
-    for k in range(q.shape[1]):
-        largest = 0.0
-        for i in range(q.shape[0]):
-            if group[i] == which:
-                largest = max(largest, abs(q[i, k]))
-        if largest > 0.0:
-            return k, largest
-    return q.shape[1], 0.0
+def _largest(q: Floats, group: Integers, which: int, power: int) -> float:
+    """Return the largest coefficient of a power in one group."""
+    largest = 0.0
+    for i in range(q.shape[0]):
+        if group[i] == which:
+            largest = max(largest, abs(q[i, power]))
+    return largest
 
 
 @kernel()
-def lowest_bound(laws: int, order: int) -> int:
-    """Return the lowest power by which a step is bounded: with laws by formula there may be gaps between the powers.
+def lowest_bound(gaps: int, order: int) -> int:
+    """Return the lowest power by which a step is bounded: some formulas leave gaps between the powers.
 
     Without them a series whose last coefficients vanish is a polynomial, which bounds no step.
     """
-    return 3 if laws > 0 else order
+    return 3 if gaps > 0 else order
 
 
 @kernel()
 def step_size(q: Floats, group: Integers, tolerance: float, lowest: int) -> float:
     """Return the step at which the last terms of the series are `tolerance` of what they are added to.
 
-    Where the last two coefficients vanish, the highest one counts that does not, down to the power `lowest`.
+    Where the last two coefficients vanish, the highest one that does not tells the radius of convergence, down to the
+    power `lowest`: what is left out begins beyond the order all the same.
     """
-    n, order = q.shape[0], q.shape[1] - 1
+    order = q.shape[1] - 1
     best = np.inf
-    for g in range(4):
-        last, before, first, second, zeroth = 0.0, 0.0, 0.0, 0.0, 0.0
-        for i in range(n):
-            if group[i] == g:
-                last = max(last, abs(q[i, order]))
-                before = max(before, abs(q[i, order - 1]))
-                zeroth = max(zeroth, abs(q[i, 0]))
-                first = max(first, abs(q[i, 1]))
-                second = max(second, abs(q[i, 2]))
+    for g in range(FORCES + 1):
+        last, before = _largest(q, group, g, order), _largest(q, group, g, order - 1)
         top = order
         while last == 0.0 and before == 0.0 and top > lowest:
             top -= 1
-            for i in range(n):
-                if group[i] == g:
-                    last = max(last, abs(q[i, top]))
+            last = _largest(q, group, g, top)
         # The logarithms of sizes and scales; that of zero is minus infinity.
-        rate, gain = math.log(first), math.log(second)
+        nearest = 0.0 if g == 2 else math.log(_largest(q, group, g, 0))
+        rate, gain = math.log(_largest(q, group, g, 1)), math.log(_largest(q, group, g, 2))
         for power, number in ((top, last), (order - 1, before)):
             if number > 0.0:
                 size = math.log(number)
-                scale = 0.0 if g == 2 else math.log(zeroth)
                 # What starts at zero is measured by how far it comes within the radius of convergence.
-                scale = max(scale, gain + 2.0 * (gain - size) / (power - 2))
+                scale = max(nearest, gain + 2.0 * (gain - size) / (power - 2))
                 scale = max(scale, rate + (rate - size) / (power - 1))
-                if scale == -np.inf:
-                    k, moved = _first_motion(q, group, g)
-                    if k >= power:
-                        # It moves by rounding alone.
-                        continue
-                    scale = math.log(moved) + k * (math.log(moved) - size) / (power - k)
-                best = min(best, (math.log(tolerance) + scale - size) / power)
+                beyond = order if power < order - 1 else power
+                step = (scale - size) / power + math.log(tolerance) / beyond
+                for k in range(3, power):
+                    if k > EARLY and step > -np.inf:
+                        break
+                    moved = math.log(_largest(q, group, g, k))
+                    step = max(step, (moved - size) / (power - k) + math.log(tolerance) / (beyond - k))
+                # What has no other coefficient moves by rounding alone, or is a polynomial.
+                if step > -np.inf:
+                    best = min(best, step)
     return math.exp(best)
 
 
@@ -263,7 +257,7 @@ def advance(
         for k in range(order + 1):
             for i in range(n):
                 c[i, k] = path[k * size + i]
-        h = way * step_size(c, table.group, tolerance, lowest_bound(table.laws.operations.shape[0], order))
+        h = way * step_size(c, table.group, tolerance, lowest_bound(table.laws.gaps, order))
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return (SINGULAR if abs(h) >= 0.0 else LOST), step
         if abs(h) >= abs(left):

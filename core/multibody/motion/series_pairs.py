@@ -259,7 +259,7 @@ def advance_pairs(
         if not np.all(np.isfinite(c[:, order, 0])):
             # Beside a collision the last coefficients overflow before the step is too short.
             return (SINGULAR if np.all(np.isfinite(c[:, 2, 0])) else LOST), step
-        h = way * step_size(c[:, :, 0], table.group, tolerance, lowest_bound(table.laws.operations.shape[0], order))
+        h = way * step_size(c[:, :, 0], table.group, tolerance, lowest_bound(table.laws.gaps, order))
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return (SINGULAR if abs(h) >= 0.0 else LOST), step
         if abs(h) >= abs(left):

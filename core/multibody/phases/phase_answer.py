@@ -184,11 +184,11 @@ def _conserved(motion: PhaseMotion) -> bool:
 
 def _phase_in_answer(phase: Phase, following: Phase | None, motion: PhaseMotion) -> MotionPhase:
     model = phase.models[0]
-    name, why = name_of_parts([part for _, part in model.whole.parts])
+    name, why = name_of_parts([part for _, part in model.moving])
     if phase.bounces is not None:
         name = "accumulating bounces"
         why = "every bounce is the one before it on a smaller scale: their sums are geometric"
-    elif not model.whole.parts:
+    elif not model.moving:
         why = "the connections and contacts hold everything where it is"
     end_error = None
     if phase.end is not None and following is not None:
@@ -200,7 +200,7 @@ def _phase_in_answer(phase: Phase, following: Phase | None, motion: PhaseMotion)
         None if phase.end is None else nearest(phase.end),
         name,
         why,
-        sum(piece.freedom for piece in model.pieces),
+        sum(piece.freedom for piece, _ in model.moving),
         len(model.whole.reduced.table.names),
         {one.name: state.value for one, state in zip(motion.unilateral, phase.states, strict=True)},
         {"start": late(phase.tracks), "end": end_error},

@@ -46,7 +46,7 @@ class ExpandedInBalls:
             places_now, rates_now = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
             motion = expansion(replace(table, q=places_now, v=rates_now), ORDER, turning.chosen)
             coefficients = np.array([[float(x) for x in places] for places in motion.places])
-            step = step_size(coefficients, group, TOLERANCE, lowest_bound(len(table.laws), ORDER))
+            step = step_size(coefficients, group, TOLERANCE, lowest_bound(self.whole.arrays[0].laws.gaps, ORDER))
             natural[s], exponent = step, math.ceil(math.log2(reach[s]))
             if step < reach[s]:
                 exponent = math.floor(math.log2(step))

@@ -33,10 +33,14 @@ def uniform_motion(table: Table, accelerations: Sequence[Ball]) -> Expansion:
 def keeps_its_forces(table: Table, motion: Expansion) -> bool:
     """Return whether the forces at the start of a motion with constant accelerations move it at all times.
 
-    They may change all the same: where their arms do. The equations of motion with the multipliers of the start are
-    polynomials in time, and hold at all times where every coefficient vanishes.
+    They may change all the same: where their arms do, or a formula of what moves acts on what rests. The equations of
+    motion with the multipliers of the start are polynomials in time, and hold at all times where every coefficient
+    vanishes.
     """
     order, rates = motion.order, [slope(series) for series in motion.places]
+    read = [(one, key[0]) for law in table.acting for one in law.inputs.values() for key in one.form if key]
+    if any(not is_zero(x) for one, i in read for x in (rates if one.rate else motion.places)[i][1:]):
+        return False
     left = [[ZERO] * order for _ in table.names]
 
     def add(i: int, factor: Ball, series: Sequence[Ball]) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import dd_mul_d
-from core.multibody.equations.packed import Packed
+from core.multibody.equations.packed import FORCES, Packed
 from core.multibody.equations.saddle import FAILED, Saddle, inverted_pairs, saddle_space
 from core.multibody.laws.kernel import until_zero
 from core.multibody.motion.products import Products, products_of, started
@@ -29,21 +29,30 @@ TOLERANCE = 2.0**-50
 
 
 @kernel()
-def _to_corner(table: Packed, space: Saddle, products: Products, own: Floats, step: float) -> float:
+def _step(table: Packed, products: Products, own: Floats, group: Integers) -> float:
+    """Return the step over which a path holds, whose coefficients are taken up into `own`.
+
+    What rests under a formula has forces whose series alone bound it.
+    """
+    path, size, n = products.path, products.right.shape[1], table.load.shape[0]
+    for k in range(own.shape[1]):
+        for i in range(own.shape[0]):
+            own[i, k] = path[0, k * size + i] if i < n or k > 1 else 0.0
+    return step_size(own, group, TOLERANCE, lowest_bound(table.laws.gaps, own.shape[1] - 1))
+
+
+@kernel()
+def _to_corner(table: Packed, space: Saddle, products: Products, own: Floats, group: Integers, step: float) -> float:
     """Return the part of a step up to a corner of a formula; the series is that beyond a corner that is near.
 
     What lies between the state and a corner that is near has a force that is smaller than all others by `NEAR`.
     """
-    n, size, order = own.shape[0], products.right.shape[1], own.shape[1] - 1
-    course, path = products.course, products.path
+    course, order = products.course, own.shape[1] - 1
     found = abs(until_zero(table.laws, products.laws, course[0] * step, course))
     if found < NEAR * step:
         started(table, products)
         coefficients_pairs(table, space, products, order - 1)
-        for i in range(n):
-            for k in range(order + 1):
-                own[i, k] = path[0, k * size + i]
-        step = step_size(own, table.group, TOLERANCE, lowest_bound(table.laws.operations.shape[0], own.shape[1] - 1))
+        step = _step(table, products, own, group)
         found = abs(until_zero(table.laws, products.laws, course[0] * step, course))
     course[1:] = 0.0
     return min(step, found)
@@ -84,7 +93,9 @@ def expand(
     lines = np.empty((table.lines.shape[0], 2))
     space, products = saddle_space(table, 2), products_of(table, order, 2)
     path, size = products.path, products.right.shape[1]
-    own = np.empty((n, order + 1))
+    own = np.empty((n + m if table.laws.gaps > 0 else n, order + 1))
+    group = np.full(len(own), FORCES)
+    group[:n] = table.group
     products.course[0] = way
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
@@ -95,12 +106,9 @@ def expand(
             path[0, size + i], path[1, size + i] = v[s, i, 0], v[s, i, 1]
         started(table, products)
         coefficients_pairs(table, space, products, order - 1)
-        for i in range(n):
-            for k in range(order + 1):
-                own[i, k] = path[0, k * size + i]
-        step = step_size(own, table.group, TOLERANCE, lowest_bound(table.laws.operations.shape[0], own.shape[1] - 1))
+        step = _step(table, products, own, group)
         if table.laws.operations.shape[0] > 0:
-            step = _to_corner(table, space, products, own, step)
+            step = _to_corner(table, space, products, own, group, step)
         if not step > 0.0:
             return s
         exponent, steps[s] = longest[s], step
