@@ -10,13 +10,13 @@ import numpy as np
 
 from core.arrays import Floats
 from core.balls import precision
-from core.errors import InvalidParameter, PlacesDisagree, SelfCheckFailed
+from core.errors import InvalidParameter, PlacesDisagree
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.answer import SceneSolution
 from core.multibody.assembly.assembled_scene import assembled
 from core.multibody.assembly.nearest_that_fits import with_nearest
 from core.multibody.audit.audit import audited
-from core.multibody.audit.failure import Failure
+from core.multibody.audit.failure import require
 from core.multibody.audit.nearest import audited_assembly
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
@@ -127,7 +127,7 @@ def solve_scene(
             )
     found = assembled(scene)
     if found.assembly is not None and budget.audited:
-        _require(audited_assembly(scene, found.scene))
+        require(audited_assembly(scene, found.scene))
     with precision(BITS):
         of_motion = [_of_motion(output, i, scene) for i, output in enumerate(outputs)]
         request = SceneRequest(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget)
@@ -170,11 +170,5 @@ def _checked(scene: Scene, request: SceneRequest) -> SceneSolution:
     """Answer a question about a scene as one part, and check the answer against the description."""
     answer, system = answered(scene, request)
     if request.budget.audited:
-        _require(audited(scene, answer, system.sampled, request.times))
+        require(audited(scene, answer, system.sampled, request.times))
     return answer
-
-
-def _require(failure: Failure | None) -> None:
-    """Raise `SelfCheckFailed` for a law that an answer does not keep."""
-    if failure is not None:
-        raise SelfCheckFailed(failure.law, failure.connection, failure.time, failure.residual, failure.allowed)

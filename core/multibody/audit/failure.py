@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.errors import SelfCheckFailed
 from core.multibody.audit.placement import Numbers
 from core.multibody.audit.samples import Samples
 
@@ -45,6 +46,12 @@ class Failure:
     def ratio(self) -> float:
         """How many times larger the residual is than what is allowed."""
         return self.residual / self.allowed if self.allowed > 0.0 else np.inf
+
+
+def require(failure: Failure | None) -> None:
+    """Raise `SelfCheckFailed` for a law that an answer does not keep."""
+    if failure is not None:
+        raise SelfCheckFailed(failure.law, failure.connection, failure.time, failure.residual, failure.allowed)
 
 
 Residual = Callable[[Samples], Numbers]

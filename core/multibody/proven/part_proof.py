@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -15,6 +15,7 @@ from core.digits.adaptive_precision import working_bits
 from core.digits.decimals import decimal, floor_below, place_of
 from core.errors import NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
+from core.multibody.answer import Energy
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import PartModel, SceneModel, SmallMotion
@@ -26,6 +27,7 @@ from core.multibody.proven.proven_series import ProvenSeries, Vector
 from core.multibody.start import noticed_of, scene_model, slack_strings
 from core.multibody.table.frames import Frame
 from core.multibody.trajectory.events import End, end_of, first_event
+from core.notices import Notice
 from core.systems.trajectory import MotionEvent
 
 
@@ -35,6 +37,29 @@ class ProvenColumn:
 
     values: list[Any]
     unit: str
+
+
+@dataclass(frozen=True)
+class ProvenAnswer:
+    """The answer, its numbers as decimal strings; what was not requested is None.
+
+    Attributes
+    ----------
+    rows : list of int or None
+        Which of the times the motion reaches.
+    columns : mapping of str to ProvenColumn, or None
+    ended : str or None
+        `HORIZON`, or the event that ends the motion before the last time.
+    """
+
+    model: SceneModel
+    accelerations: Mapping[str, Any] | None
+    forces: Mapping[str, Any] | None
+    energy: Energy | None
+    rows: list[int] | None
+    columns: Mapping[str, ProvenColumn] | None
+    ended: str | None
+    warnings: tuple[Notice, ...]
 
 
 class PartProof:

@@ -8,26 +8,28 @@ do not tell from zero counts as zero.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
+import numpy as np
 from flint import ctx
 
 from core.balls import precision
 from core.digits.adaptive_precision import bits_for, check_digits, until_determined
 from core.digits.exact_inputs import enclosed
 from core.errors import InvalidParameter, NotApplicable
-from core.multibody.algebra.polynomials import BITS, ZERO
+from core.multibody.algebra.polynomials import BITS, ZERO, Ball
 from core.multibody.answer import Energy
 from core.multibody.assembly.assembled_scene import assembled
+from core.multibody.audit.failure import require
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
-from core.multibody.model_answer import SceneModel
 from core.multibody.parts.joined_model import joined_model
 from core.multibody.phases.phases import one_sided
-from core.multibody.proven.part_proof import PartProof, ProvenColumn
+from core.multibody.proven.audited_digits import audited_digits
+from core.multibody.proven.part_proof import PartProof, ProvenAnswer, ProvenColumn
 from core.multibody.start import NumberKind, accelerations_of, energy_of, forces_of_start
 from core.notices import Notice
 from core.systems.trajectory import HORIZON
@@ -43,36 +45,20 @@ _MOST_ADDED = 300
 """Bits that are added at most at the first precision; what loses more is found out by computing."""
 
 
-@dataclass(frozen=True)
-class ProvenAnswer:
-    """The answer, its numbers as decimal strings; what was not requested is None.
-
-    Attributes
-    ----------
-    rows : list of int or None
-        Which of the times the motion reaches.
-    columns : mapping of str to ProvenColumn, or None
-    ended : str or None
-        `HORIZON`, or the event that ends the motion before the last time.
-    """
-
-    model: SceneModel
-    accelerations: Mapping[str, Any] | None
-    forces: Mapping[str, Any] | None
-    energy: Energy | None
-    rows: list[int] | None
-    columns: Mapping[str, ProvenColumn] | None
-    ended: str | None
-    warnings: tuple[Notice, ...]
-
-
 def proven_answer(
     scene: Scene,
     digits: int,
     times: Sequence[Fraction] = (),
     outputs: Sequence[str] | None = None,
+    *,
+    audited: bool = True,
 ) -> ProvenAnswer:
     """Answer a question about a scene with so many significant digits.
+
+    Parameters
+    ----------
+    audited : bool
+        Whether the answer is held against the description before it is given.
 
     Raises
     ------
@@ -83,6 +69,8 @@ def proven_answer(
         depend on one another.
     BudgetExceeded
         For a motion that is longer than can be proven.
+    SelfCheckFailed
+        Where the answer that was found does not keep the laws of mechanics: see `core.multibody.audit`.
     """
     check_digits(digits, 8 * len(scene.bodies) * max(1, len(times)))
     if one_sided(scene):
@@ -99,7 +87,16 @@ def proven_answer(
     farthest = max((abs(float(t)) for t in times), default=0.0)
     bits = bits_for(digits) + int(min(_MOST_ADDED, _BITS_OF_A_SECOND * farthest))
     parts = independent_parts(scene)
-    return until_determined(lambda: _answer(_proofs(parts, digits, bits), times, outputs), bits)
+
+    def found() -> ProvenAnswer:
+        proofs = _proofs(parts, digits, bits)
+        answer = _answer(proofs, times, outputs)
+        if audited:
+            moving = partial(_columns, proofs)
+            require(audited_digits(scene, answer, moving, np.array([float(time) for time in times])))
+        return answer
+
+    return until_determined(found, bits)
 
 
 def check_instants(times: Sequence[Fraction]) -> None:
@@ -135,16 +132,14 @@ def _answer(parts: Sequence[PartProof], times: Sequence[Fraction], outputs: Sequ
         )
         energy = Energy(kinetic, potential, total, all(one.conserved for one in energies))
     rows, ended = None, None
-    columns: dict[str, ProvenColumn] | None = None
+    columns: Mapping[str, ProvenColumn] | None = None
     if times:
         reached = [part.reached(times) for part in parts]
         rows = [k for k in range(len(times)) if all(k in own for own, _ in reached)]
         events = [event for _, events in reached for event in events if event.time >= 0.0]
         ended = min(events, key=lambda event: event.time).kind if events else HORIZON
         if "trajectory" in outputs:
-            columns = {}
-            for part in parts:
-                columns |= part.columns([enclosed(times[row]) for row in rows])
+            columns = _columns(parts, [enclosed(times[row]) for row in rows])
     what = "that strings stay taut, chains on their pegs and lengths positive up to the last time"
     notice = Notice("end-not-proven", f"{what} is found in doubles, and not proven", ("times",))
     return ProvenAnswer(
@@ -157,3 +152,8 @@ def _answer(parts: Sequence[PartProof], times: Sequence[Fraction], outputs: Sequ
         ended,
         (notice,) if times and any(part.watched for part in parts) else (),
     )
+
+
+def _columns(parts: Sequence[PartProof], times: Sequence[Ball]) -> dict[str, ProvenColumn]:
+    """Return the columns of all parts, at times before what ends their motion."""
+    return {name: column for part in parts for name, column in part.columns(times).items()}

@@ -75,7 +75,7 @@ def answer_certified_scene(question: CertifiedSceneRequest, budget: Budget) -> A
     digits = question.digits
     _samples(question, budget)
     times = () if question.times is None else instants(question.times)
-    found = proven_answer(question.scene(), digits, times, question.outputs)
+    found = proven_answer(question.scene(), digits, times, question.outputs, audited=budget.audited)
     answer: Answer = {
         "model": _proven(model_fields(found.model)),
         "accuracy": accuracy(digits),

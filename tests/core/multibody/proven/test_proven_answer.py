@@ -11,7 +11,8 @@ import pytest
 from mpmath import mp, mpf
 
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
-from core.multibody.proven.proven_answer import ProvenAnswer, proven_answer
+from core.multibody.proven.part_proof import ProvenAnswer
+from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
 from tests.core.multibody.proven.test_proven_series import SWING
 from tests.core.multibody.worked_examples import read
