@@ -23,6 +23,8 @@ check: environment
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/python clients/python/generate.py
+	cd clients/python && ../../$(BIN)/mypy --strict polhode_client
 
 # Otherwise every process of the tests would compile all of them.
 kernels: environment
@@ -55,7 +57,6 @@ release-contract: environment
 
 openapi: environment
 	$(BIN)/python -m service --openapi > docs/openapi.json
-	$(BIN)/python clients/python/generate.py
 
 judge: environment
 	$(BIN)/python -m tests.core.certified.judge 100000
@@ -170,6 +171,12 @@ ATTACKS := tests/service/test_server.py tests/service/test_fuzz.py tests/service
 
 attacks: kernels
 	timeout 1800 $(BIN)/python -m pytest -q $(ATTACKS)
+
+.PHONY: clients
+
+# Generated clients: they compile in strict mode, and read and write every example as it is.
+clients: kernels
+	$(BIN)/python -m pytest -q tests/clients/generated_clients.py
 
 .PHONY: fuzz fuzz-loop schemathesis soak scheduling health calibration image dial studies
 

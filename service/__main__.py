@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from multiprocessing import forkserver
 from typing import Any
 
+import orjson
 from pydantic import ValidationError
 
 from core.near_names import nearest
@@ -77,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.openapi:
         from service.app import app
 
-        sys.stdout.buffer.write(app.openapi_text() + b"\n")
+        sys.stdout.buffer.write(orjson.dumps(app.openapi(), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
         return
     configure(settings.log_level)
     for name in unknown:

@@ -96,7 +96,7 @@ class Service(FastAPI):
         self._hosts = [name.strip().lower() for name in settings.allowed_hosts.split(",") if name.strip()]
         self._handlers = {route: handler for route, handler in dispatcher.handlers.items() if "{" not in route[1]}
         self._bodies = dispatcher.bodies
-        serve_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
+        serve_routes(self, dispatcher.handlers, dispatcher.unrouted)
         self._http = self._with_cors(self._known_or_not)
         self._openapi_text = b""
 
@@ -128,8 +128,14 @@ class Service(FastAPI):
             app,
             allow_origins=origins,
             allow_methods=("GET", "HEAD", "POST", "DELETE"),
-            allow_headers=("authorization", "content-type", "if-none-match", "prefer", "traceparent", "x-request-id"),
-            expose_headers=("etag", "location", "preference-applied", "retry-after", "server-timing", "x-request-id"),
+            allow_headers=(
+                *("authorization", "content-type", "idempotency-key", "if-none-match", "prefer"),
+                *("traceparent", "x-request-id"),
+            ),
+            expose_headers=(
+                *("deprecation", "etag", "link", "location", "preference-applied", "retry-after", "server-timing"),
+                *("sunset", "x-request-id"),
+            ),
             max_age=3600,
         )
 
@@ -140,7 +146,7 @@ class Service(FastAPI):
     def openapi_text(self) -> bytes:
         """Return the OpenAPI document as JSON."""
         if not self._openapi_text:
-            self._openapi_text = orjson.dumps(self.openapi(), option=orjson.OPT_INDENT_2)
+            self._openapi_text = orjson.dumps(self.openapi())
         return self._openapi_text
 
     @contextlib.asynccontextmanager

@@ -25,14 +25,15 @@ POLLING = 0.5
 RESPONSE_TIMEOUT = 60.0
 """Time that a response of the service may take (s)."""
 
-MEDIA_TYPES = {
-    ".json": "application/json",
-    ".npz": "application/x-npz",
-    ".parquet": "application/vnd.apache.parquet",
-    ".svg": "image/svg+xml",
-    ".zip": "application/vnd.zarr+zip",
+ENDINGS = {
+    ".csv": ".csv",
+    ".json": "",
+    ".npz": ".npz",
+    ".parquet": ".parquet",
+    ".svg": ".svg",
+    ".zip": ".zarr.zip",
 }
-"""Forms of a study's results, by the ending of the file that they are written to."""
+"""Of the address of a study's results, by the ending of the file that they are written to."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -49,7 +50,7 @@ def parser() -> argparse.ArgumentParser:
     grade.set_defaults(run=_grade)
     study = commands.add_parser("study", help="run a study on a running service")
     study.add_argument("file", type=Path, metavar="FILE", help="a request to POST /v1/studies")
-    study.add_argument("--output", type=Path, required=True, help=f"ending in one of {', '.join(MEDIA_TYPES)}")
+    study.add_argument("--output", type=Path, required=True, help=f"ending in one of {', '.join(ENDINGS)}")
     address = f"http://127.0.0.1:{os.environ.get('POLHODE_PORT') or '8000'}"
     study.add_argument("--url", default=address, help=f"of the service (default {address})")
     study.set_defaults(run=_study)
@@ -97,8 +98,8 @@ def _grade(options: argparse.Namespace) -> None:
 
 
 def _study(options: argparse.Namespace) -> None:
-    if options.output.suffix not in MEDIA_TYPES:
-        sys.exit(f"the output must end in one of {', '.join(MEDIA_TYPES)}")
+    if options.output.suffix not in ENDINGS:
+        sys.exit(f"the output must end in one of {', '.join(ENDINGS)}")
     state = json.loads(_sent(f"{options.url}/v1/studies", body=_read(options.file)))
     address = f"{options.url}/v1/studies/{state['jobID']}"
     while state["status"] in ("accepted", "running"):
@@ -109,7 +110,7 @@ def _study(options: argparse.Namespace) -> None:
     sys.stderr.write(f"\r{state['status']}       \n")
     if state["status"] != "successful":
         sys.exit(str(state.get("message", state["status"])))
-    options.output.write_bytes(_sent(f"{address}/results", accept=MEDIA_TYPES[options.output.suffix]))
+    options.output.write_bytes(_sent(f"{address}/results{ENDINGS[options.output.suffix]}"))
 
 
 def _read(file: Path) -> bytes:
@@ -119,9 +120,9 @@ def _read(file: Path) -> bytes:
         sys.exit(f"{file}: {error.strerror}")
 
 
-def _sent(url: str, *, body: bytes | None = None, accept: str = "application/json") -> bytes:
+def _sent(url: str, *, body: bytes | None = None) -> bytes:
     """Return the response of a service; end with its problem, or with what keeps it from being reached."""
-    headers = {"Accept": accept} | ({} if body is None else {"Content-Type": "application/json"})
+    headers = {} if body is None else {"Content-Type": "application/json"}
     try:
         with urlopen(Request(url, body, headers), timeout=RESPONSE_TIMEOUT) as response:
             read: bytes = response.read()

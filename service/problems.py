@@ -115,6 +115,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             "Each entry of errors points at a place in the document that was sent and says what must hold there.",
         ),
         ProblemType(
+            "idempotency-key-reused",
+            422,
+            "The Idempotency-Key belongs to another request",
+            "Send each request with a key of its own; a repeated request is sent as it was before.",
+        ),
+        ProblemType(
             "unphysical-inertia",
             422,
             "No body has this inertia",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -15,6 +15,15 @@ from core.systems.budget import Budget
 
 TABLE = "service.routes:questions"
 """Location of the route table, ``"module:function"``; each compute process loads it by itself."""
+
+ENDINGS = {
+    "application/vnd.apache.parquet": ".parquet",
+    "application/vnd.zarr+zip": ".zarr.zip",
+    "application/x-npz": ".npz",
+    "image/svg+xml": ".svg",
+    "text/csv": ".csv",
+}
+"""Endings of paths whose answer has another media type than JSON, by that type."""
 
 Answer = dict[str, Any]
 """Fields of an answer in the order in which they are written; see `service.responses.json_rows`."""
@@ -76,8 +85,31 @@ def never(question: Any) -> bool:
     return False
 
 
+class Documented:
+    """What the documentation of every route has.
+
+    Attributes
+    ----------
+    media_type : str
+        Of the answer.
+    representations : collection of str
+        Media types of other forms of it, each of which is an operation of its own.
+    parameters : sequence of mappings
+        Of query and headers, as OpenAPI describes them.
+    """
+
+    media_type: str = "application/json"
+    representations: Collection[str] = ()
+    parameters: Sequence[Mapping[str, Any]] = ()
+
+    @property
+    def endings(self) -> Mapping[str, str]:
+        """Media types of the other forms, with the endings of their paths."""
+        return {media: ENDINGS[media] for media in self.representations}
+
+
 @dataclass(frozen=True)
-class PostRoute:
+class PostRoute(Documented):
     """POST: a question to the mechanics.
 
     Attributes
@@ -167,7 +199,7 @@ class StudyRoute(PostRoute):
 
 
 @dataclass(frozen=True)
-class ResourceRoute:
+class ResourceRoute(Documented):
     """GET or DELETE of what a client has made; its path has parameters in braces.
 
     Attributes
@@ -178,8 +210,10 @@ class ResourceRoute:
         Pydantic model that documents a JSON answer.
     representations : sequence of str
         Media types of other answers.
-    example : mapping or None
-        An example of a JSON answer.
+    example : callable or None
+        Returns an example of a JSON answer.
+    parameters : sequence of mappings
+        Of the query, as OpenAPI describes them.
     """
 
     method: str
@@ -191,12 +225,14 @@ class ResourceRoute:
     answer: type[BaseModel] | None = None
     description: str = ""
     representations: Sequence[str] = ()
-    example: Mapping[str, Any] | None = None
+    example: Callable[[], Mapping[str, Any]] | None = None
     documented: bool = True
+    media_type: str = "application/json"
+    parameters: Sequence[Mapping[str, Any]] = ()
 
 
 @dataclass(frozen=True)
-class GetRoute:
+class GetRoute(Documented):
     """GET: a document that takes no question.
 
     Attributes

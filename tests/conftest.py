@@ -15,11 +15,15 @@ import tempfile
 from collections.abc import Generator
 from pathlib import Path
 
+import generate
 import pytest
 from hypothesis import settings
 
 settings.register_profile("fixed", derandomize=True, deadline=None)
 settings.load_profile("fixed")
+
+# The client's modules that are made when it is built.
+generate.write()
 
 # Before any settings of the service are read.
 FOLDER = Path(os.environ.setdefault("POLHODE_DATA", tempfile.mkdtemp(prefix="polhode-tests-")))

@@ -1,30 +1,40 @@
-"""Write the typed part of the client from docs/openapi.json: python clients/python/generate.py.
+"""Write the typed part of the client from the OpenAPI document: python clients/python/generate.py.
 
 `documents.py` has a TypedDict for every object that is sent or answered, `operations.py` a method for every operation,
-for the blocking client and for the asynchronous one. Both are checked in; a test compares them with the document.
+for the blocking client and for the asynchronous one. They are part of the package, which is built with them, and not of
+the repository.
 """
 
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
+import os
 from collections.abc import Iterator, Mapping
 from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
-HERE = Path(__file__).parent
-DOCUMENT = HERE.parents[1] / "docs" / "openapi.json"
+HERE = Path(__file__).resolve().parent
+# A source distribution has the document beside this file.
+DOCUMENT = next(
+    (file for file in (HERE / "openapi.json", HERE.parents[1] / "docs" / "openapi.json") if file.exists()), HERE
+)
 PACKAGE = HERE / "polhode_client"
+MODULES = ("documents.py", "operations.py")
 Schema = Mapping[str, Any]
 
 PLAIN = {"string": "str", "number": "float", "integer": "int", "boolean": "bool", "null": "None"}
-TEXT = ("image/svg+xml", "text/html", "text/plain", "text/javascript", "text/css", "text/event-stream")
+ANSWERS = {
+    "application/vnd.apache.parquet": "bytes",
+    "application/vnd.zarr+zip": "bytes",
+    "application/x-npz": "dict[str, Any]",
+    **dict.fromkeys(("image/svg+xml", "text/csv", "text/event-stream", "text/html", "text/plain"), "str"),
+}
+"""Annotations of answers that are not JSON."""
 
 HEAD = '''"""{}
 
-Written by clients/python/generate.py from docs/openapi.json; do not edit.
+Written by generate.py from the OpenAPI document; do not edit.
 """
 
 # ruff: noqa: E501, D1
@@ -141,7 +151,7 @@ def _within(schema: Any, components: Mapping[str, Schema]) -> Iterator[str]:
 
 
 def generated(document: Mapping[str, Any]) -> dict[str, str]:
-    """Return the text of each generated module, by its name, before it is formatted."""
+    """Return the text of each generated module, by its name."""
     components = document["components"]["schemas"]
     table = [
         (entry["operationId"], method.upper(), path, entry)
@@ -156,28 +166,31 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
     types = Types(components, {name for schema in requests.values() for name in _within(schema, components)})
     rows, methods, awaited = [], [], []
     for name, method, path, entry in table:
-        media = next(entry["responses"][status] for status in ("200", "202") if status in entry["responses"])["content"]
-        places = [parameter["name"] for parameter in entry.get("parameters", ()) if parameter["in"] == "path"]
-        asked = (
-            f"**question: Unpack[documents.{types.annotation(requests[name], sent=True)}]" if name in requests else ""
-        )
-        rows.append(f"{name!r}: Operation({method!r}, {path!r}, {entry['summary']!r}),")
-        answers = {"": media["application/json"]["schema"]} if "application/json" in media else {}
-        answers |= {"_svg" if answers else "": {"type": "string"} for kind in media if kind in TEXT}
-        for suffix, schema in answers.items():
-            plain = schema.get("type") == "string" or not schema
-            answer = types.annotation(schema, sent=False)
-            answer = {"str": "str", "Any": "dict[str, Any]"}[answer] if plain else f"documents.{answer}"
-            kind = next((kind for kind in media if kind in TEXT), None) if plain and schema else None
-            passed = "".join(f", {place}={place}" for place in places)
-            call = f"self._ask({name!r}, {'question' if asked else 'None'}, {kind!r}{passed})"
-            given = "".join(f", {place}: str" for place in places)
-            head = f"def {name}{suffix}(self{given}{', ' + asked if asked else ''}) -> {answer}:"
-            text = f'"""{entry["summary"]}{", as a drawing" if suffix else ""}."""'
-            methods.append(f"    {head}\n        {text}\n        found: {answer} = {call}\n        return found\n")
-            awaited.append(
-                f"    async {head}\n        {text}\n        found: {answer} = await {call}\n        return found\n"
-            )
+        status = next(status for status in ("200", "202") if status in entry["responses"])
+        ((media, content),) = entry["responses"][status]["content"].items()
+        given, passed = ["self"], ["None", "None"]
+        own = [one for one in entry.get("parameters", ()) if "$ref" not in one]
+        places = [one["name"] for one in own if one["in"] == "path"]
+        given += [f"{place}: str" for place in places]
+        if query := [one for one in own if one["in"] == "query"]:
+            given += [
+                "*",
+                *(f"{one['name']}: {types.annotation(one['schema'], sent=True)} | None = None" for one in query),
+            ]
+            passed[1] = "{" + ", ".join(f"{one['name']!r}: {one['name']}" for one in query) + "}"
+        if name in requests:
+            given.append(f"**question: Unpack[documents.{types.annotation(requests[name], sent=True)}]")
+            passed[0] = "question"
+        passed += [f"{place}={place}" for place in places]
+        answer = types.annotation(content["schema"], sent=False) if media == "application/json" else ANSWERS[media]
+        answer = f"documents.{answer}" if answer in types.definitions else {"Any": "dict[str, Any]"}.get(answer, answer)
+        # A study is not begun twice by a request that is repeated.
+        rows.append(f"{name!r}: Operation({method!r}, {path!r}, {entry['summary']!r}, {media!r}, {status == '202'}),")
+        head = f"def {name}({', '.join(given)}) -> {answer}:"
+        text = f'        """{entry["summary"]}."""'
+        call = f"self._ask({name!r}, {', '.join(passed)})"
+        methods.append(f"    {head}\n{text}\n        found: {answer} = {call}\n        return found\n")
+        awaited.append(f"    async {head}\n{text}\n        found: {answer} = await {call}\n        return found\n")
     types.named("ProblemDocument")
     documents = "\n\n\n".join(types.definitions[name] for name in types.definitions)
     return {
@@ -188,13 +201,8 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
         + "\n",
         "operations.py": HEAD.format("Every operation of the service as a method.")
         + "\nfrom abc import ABC, abstractmethod\nfrom collections.abc import Mapping\n"
-        + "from typing import Any, NamedTuple, Unpack\n\n"
-        + "from polhode_client import documents\n\n\n"
-        + 'class Operation(NamedTuple):\n    """Method, path and summary."""\n\n'
-        + "    method: str\n    path: str\n    summary: str\n\n"
-        + "    def at(self, **places: str) -> Operation:\n"
-        + '        """Return the operation with the braces of its path filled."""\n'
-        + "        return self._replace(path=self.path.format(**places)) if places else self\n\n\n"
+        + "from typing import Any, Literal, Unpack\n\n"
+        + "from polhode_client import documents\nfrom polhode_client.operation import Operation\n\n"
         + "OPERATIONS: Mapping[str, Operation] = {\n    "
         + "\n    ".join(rows)
         + "\n}\n\n\n"
@@ -206,24 +214,25 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
 
 def _class(name: str, ask: str, text: str, methods: list[str]) -> str:
     return (
-        f'class {name}(ABC):\n    """{text}"""\n\n    @abstractmethod\n'
-        f"    {ask}(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:\n"
-        f'        """Return what an operation answers, in a media type or as its document.\n\n'
-        f'        `places` fill the braces of its path."""\n\n' + "\n".join(methods)
+        f'class {name}(ABC):\n    """{text}"""\n\n    @abstractmethod\n    {ask}(\n'
+        "        self, name: str, question: Mapping[str, Any] | None, query: Mapping[str, Any] | None, **places: str\n"
+        "    ) -> Any:\n"
+        f'        """Return the answer of an operation; `places` fill the braces of its path."""\n\n'
+        + "\n".join(methods)
     )
 
 
-def formatted(text: str, name: str) -> str:
-    """Return a module as the formatter writes it."""
-    command = [sys.executable, "-m", "ruff", "format", "--stdin-filename", str(PACKAGE / name), "-"]
-    return subprocess.run(command, input=text, capture_output=True, text=True, check=True).stdout
-
-
-def modules() -> dict[str, str]:
-    """Return what the generated modules should hold, by name."""
-    return {name: formatted(text, name) for name, text in generated(json.loads(DOCUMENT.read_text())).items()}
+def write() -> None:
+    """Write the generated modules into the package where they are older than what they are made from."""
+    made_from = max(file.stat().st_mtime_ns for file in (DOCUMENT, Path(__file__)))
+    if all((PACKAGE / name).exists() and (PACKAGE / name).stat().st_mtime_ns >= made_from for name in MODULES):
+        return
+    for name, text in generated(json.loads(DOCUMENT.read_text(encoding="utf-8"))).items():
+        # Tests of several processes may write at once, while others read.
+        beside = PACKAGE / f".{name}.{os.getpid()}"
+        beside.write_text(text, encoding="utf-8")
+        beside.replace(PACKAGE / name)
 
 
 if __name__ == "__main__":
-    for name, text in modules().items():
-        (PACKAGE / name).write_text(text)
+    write()

@@ -10,6 +10,7 @@ from typing import Any
 from core.multibody.undecided import UNDECIDED
 from docs.site.navigation import DOCS, GENERATED
 from service.problems import REGISTRY
+from service.routing import ENDINGS
 from service.settings import Settings
 
 HIDDEN = ("signature", "warnings")
@@ -36,6 +37,9 @@ def _endpoints(document: Mapping[str, Any]) -> Iterator[str]:
         yield from ("", f"## {tag.capitalize()}")
         for method, path, operation in operations:
             yield from ("", f"### {method} {path}", "", f"{operation['summary']}.")
+            if path.endswith(tuple(ENDINGS.values())):
+                # The request is that of the operation before it.
+                continue
             if operation.get("description"):
                 yield from ("", operation["description"])
             yield from _question(operation, document)
@@ -81,18 +85,18 @@ def _objects(document: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _table(schema: Mapping[str, Any], *, of_answer: bool = False) -> Iterator[str]:
-    """Yield the fields of an object; those of an answer have no defaults."""
+    """Yield the fields of an object; which of an answer are required is of no use."""
     required = schema.get("required", ())
-    heads = ["field", "type", "unit", *([] if of_answer else ["default"]), ""]
+    heads = ["field", "type", "unit", *([] if of_answer else ["required"]), ""]
     yield f"| {' | '.join(heads)} |"
     yield "|---" * len(heads) + "|"
     for name, field in schema.get("properties", {}).items():
         if of_answer and name in HIDDEN:
             continue
-        default = "" if name in required else f"`{json.dumps(field['default'])}`" if "default" in field else "optional"
+        needed = "yes" if name in required else ""
         meaning = _one_line(field.get("description", ""))
         unit = next(_units(field), "")
-        cells = [f"`{name}`", _type(field), unit, *([] if of_answer else [default]), meaning]
+        cells = [f"`{name}`", _type(field), unit, *([] if of_answer else [needed]), meaning]
         yield f"| {' | '.join(cells)} |"
 
 

@@ -14,6 +14,7 @@ from service.execution.admission import Compute, Sender
 from service.execution.executor import Executor
 from service.execution.request_handler import RequestHandler
 from service.execution.response_cache import ResponseCache
+from service.http.deprecation import DEPRECATED
 from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.keys import Keys
 from service.http.limits import Bodies, ClientGone, negotiated, parameters_of, refuse_parameters, require_readable
@@ -26,7 +27,7 @@ from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.requests.suggestions import nearest_path
 from service.responses import npz as archive
 from service.responses.json_stream import Document
-from service.routing import GetRoute, PostRoute, ResourceRoute, Route, StudyRoute
+from service.routing import ENDINGS, GetRoute, PostRoute, ResourceRoute, Route, StudyRoute
 from service.settings import Settings
 
 _NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), VARY)
@@ -78,9 +79,14 @@ class Dispatcher:
         )
         handlers: dict[tuple[str, str], ASGIApp] = {}
         for route in routes:
-            handlers[route.method, route.path] = handler = partial(self._serve, route)
-            if route.method == "GET":
-                handlers["HEAD", route.path] = handler
+            handler: ASGIApp = partial(self._serve, route)
+            if (deprecation := DEPRECATED.get(route.operation_id)) is not None:
+                handler = deprecation.announced(handler)
+            forms = {"": handler} | {ending: _in_form(handler, media) for media, ending in _endings(route).items()}
+            for ending, form in forms.items():
+                handlers[route.method, route.path + ending] = form
+                if route.method == "GET":
+                    handlers["HEAD", route.path + ending] = form
         self.handlers: Mapping[tuple[str, str], ASGIApp] = handlers
 
     async def _serve(self, route: Route, scope: Scope, receive: Receive, send: Send) -> None:
@@ -205,8 +211,11 @@ class Dispatcher:
         context = RequestContext(self._records, "none", scope, receive, send)
         path = scope["path"].removeprefix(scope.get("root_path", ""))
         methods = [method for method, known in self.handlers if _leads_to(known, path)]
+        allowed = ", ".join([*methods, "OPTIONS"])
+        if methods and scope["method"] == "OPTIONS":
+            await context.empty(((b"allow", allowed.encode()),))
+            return
         if methods:
-            allowed = ", ".join(methods)
             detail = f"this path answers {allowed}"
             problem = Problem(REGISTRY["method-not-allowed"], detail, headers=(("Allow", allowed),))
         else:
@@ -215,6 +224,22 @@ class Dispatcher:
             detail = f"there is nothing at this path; {meant}GET /openapi.json lists every path"
             problem = Problem(REGISTRY["not-found"], detail)
         await context.problem(problem)
+
+
+def _endings(route: Route) -> Mapping[str, str]:
+    """Return the media types of the forms that a route answers under a path of their own, with its endings."""
+    archived = isinstance(route, PostRoute) and not isinstance(route, StudyRoute)
+    return {**route.endings, **({archive.MEDIA_TYPE: ENDINGS[archive.MEDIA_TYPE]} if archived else {})}
+
+
+def _in_form(handler: ASGIApp, media: str) -> ASGIApp:
+    """Return a handler that answers in a media type, whatever its requests accept."""
+
+    async def serve(scope: Scope, receive: Receive, send: Send) -> None:
+        others = [header for header in scope["headers"] if header[0] != b"accept"]
+        await handler({**scope, "headers": [*others, (b"accept", media.encode())]}, receive, send)
+
+    return serve
 
 
 def _preferred(headers: Mapping[bytes, bytes]) -> bool:

@@ -174,6 +174,10 @@ class RequestContext:
         headers = (*headers, *_headers_of(coding))
         await self._respond(status, body, [JSON, length, _NOT_STORED, NOSNIFF, *headers])
 
+    async def empty(self, headers: Iterable[Header]) -> None:
+        """Answer with headers alone."""
+        await self._respond(204, b"", headers)
+
     async def events(self, events: AsyncIterator[bytes]) -> None:
         """Send server-sent events one by one as they come about.
 

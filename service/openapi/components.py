@@ -30,7 +30,8 @@ def named(document: dict[str, Any]) -> dict[str, Any]:
 def tidied(document: dict[str, Any]) -> None:
     """Write fields so that generators make the plainest types of them, and name what they make classes of.
 
-    Titles of fields and defaults that are null say nothing; a vector is an array of equal items; a number or an array
+    Titles of fields and defaults that are null say nothing. Other defaults are part of descriptions, because generators
+    demand fields that have one, or send it always. A vector is an array of equal items; a number or an array
     that may be null has two types.
     """
     for name, schema in document["components"]["schemas"].items():
@@ -49,8 +50,10 @@ def tidied(document: dict[str, Any]) -> None:
 
 def _tidy_field(name: str, field: dict[str, Any]) -> None:
     field.pop("title", None)
-    if "default" in field and field["default"] is None:
-        del field["default"]
+    default = field.pop("default", None)
+    if default is not None:
+        said = f"{json.dumps(default, ensure_ascii=False)} if left out."
+        field["description"] = f"{field['description']} {said}" if "description" in field else said.capitalize()
     title = "".join(word.capitalize() for word in name.split("_"))
     members = field.get("anyOf", [field])
     for member in members:

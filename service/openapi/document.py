@@ -16,10 +16,11 @@ from starlette.types import ASGIApp
 from core import bodies
 from core.quantities import members_of
 from service import VERSION
+from service.http.deprecation import DEPRECATED
 from service.openapi import components
 from service.openapi.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
-from service.responses import npz as archive
+from service.responses.svg import SVG
 from service.routing import PostRoute, ResourceRoute, Route, StudyRoute
 from service.schemas import ProblemDocument
 
@@ -34,8 +35,11 @@ are rows. Every number is a finite double; a derived figure outside the range of
 is a decimal string whose digits are proven, and numbers of the question may be decimal strings too ("0.1" is one tenth,
 0.1 a double).
 
-Answers are JSON, or a numpy archive for `Accept: application/x-npz`: the same names, and the rest
-as JSON in metadata.json.
+Answers are JSON. Every path that answers a question also exists with the ending `.npz`, whose answer is a numpy archive
+with the same names and the rest as JSON in metadata.json; `Accept: application/x-npz` on the path itself has the same
+effect, as `Accept` has for the other endings. A question may be sent as such an archive, too
+(`Content-Type: application/x-npz`): metadata.json is the document, in which `{"array": "positions"}` stands for the
+array of the member positions.npy.
 
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
 """
@@ -48,25 +52,19 @@ PREFER = {
     "name": "Prefer",
     "in": "header",
     "required": False,
-    "description": "respond-async: the answer is computed in the background and is the result of a study.",
+    "description": "respond-async: the answer is computed in the background and is the result of a study. The response "
+    "is 202 with its state, as that of POST /v1/studies.",
     "schema": {"type": "string", "title": "Prefer"},
 }
 
-PACKED = {
-    "type": "string",
-    "format": "binary",
-    "description": "numpy archive, as numpy.savez packs it: the JSON document as the member metadata.json, in which "
-    '{"array": "positions"} stands for the array of the member positions.npy.',
+REPEATED = {
+    "name": "Idempotency-Key",
+    "in": "header",
+    "required": False,
+    "description": "A name of the client's own for this request. A request that is repeated with the name is answered "
+    "with the study of the first, as long as that exists.",
+    "schema": {"type": "string", "title": "IdempotencyKey", "maxLength": 255},
 }
-"""A request that is a numpy archive."""
-
-UNPACKED = {
-    "type": "string",
-    "format": "binary",
-    "description": "numpy archive: each array under its name in the JSON answer (steps joined by slashes), the "
-    "rest in the member metadata.json.",
-}
-"""An answer that is one."""
 
 ABOUT: Mapping[str, Any] = {
     "title": "Polhode",
@@ -91,14 +89,12 @@ class _Dispatched(Response):
         await self._handler(scope, receive, send)
 
 
-def serve_routes(
-    app: FastAPI, routes: Sequence[Route], handlers: Mapping[tuple[str, str], ASGIApp], unrouted: ASGIApp
-) -> None:
-    """Give FastAPI the routes, their handlers by method and path, and what answers where none of them fits."""
-    for route in routes:
-        endpoint = Endpoint(route.path, unrouted, include_in_schema=False)
+def serve_routes(app: FastAPI, handlers: Mapping[tuple[str, str], ASGIApp], unrouted: ASGIApp) -> None:
+    """Give FastAPI the handlers by method and path, and what answers where none of them fits."""
+    for (method, path), handler in handlers.items():
+        endpoint = Endpoint(path, unrouted, include_in_schema=False)
         # An endpoint that is a function would be given a request, and not what an ASGI application is.
-        endpoint.app, endpoint.methods = handlers[route.method, route.path], {route.method}
+        endpoint.app, endpoint.methods = handler, {method}
         app.router.routes.append(endpoint)
 
     async def refuse(request: Request, error: Exception) -> Response:
@@ -115,7 +111,10 @@ def openapi(routes: Sequence[Route]) -> dict[str, Any]:
     later = {path for route in shown if isinstance(route, StudyRoute) for path in route.paths}
     paths: dict[str, Any] = {}
     for route in shown:
-        paths.setdefault(route.path, {})[route.method.lower()] = _operation(route, schemas, later)
+        operation = _operation(route, schemas, later)
+        paths.setdefault(route.path, {})[route.method.lower()] = operation
+        for media, ending in route.endings.items():
+            paths[route.path + ending] = {route.method.lower(): _in_form(operation, media, ending)}
     problem = ProblemDocument.model_json_schema(ref_template=components.PREFIX + "{model}")
     document: dict[str, Any] = {
         "openapi": "3.1.0",
@@ -136,6 +135,7 @@ def openapi(routes: Sequence[Route]) -> dict[str, Any]:
                     "description": "Needed where the service has a file of keys.",
                 }
             },
+            "parameters": {one["name"]: one for one in (PREFER, REPEATED)},
             "responses": {
                 _response_name(status): _problem(status)
                 for status in sorted({entry.status for entry in REGISTRY.values()})
@@ -178,6 +178,8 @@ def _types(route: Route) -> Iterator[tuple[str, Any]]:
 def _operation(route: Route, schemas: Mapping[Place, Any], later: Collection[str]) -> dict[str, Any]:
     """Return an operation of the document; `later` are the paths of what may be answered in the background."""
     found: dict[str, Any] = {"tags": [route.tag], "summary": route.summary}
+    if route.operation_id in DEPRECATED:
+        found["deprecated"] = True
     if route.description:
         found["description"] = route.description
     found["operationId"] = route.operation_id
@@ -193,21 +195,20 @@ def _operation(route: Route, schemas: Mapping[Place, Any], later: Collection[str
             name: {"summary": example.summary, "value": dict(example.question)}
             for name, example in route.examples.items()
         }
-        content = {"application/json": {"examples": examples, "schema": schemas[route.operation_id, "question"]}}
-        found["requestBody"] = {"content": content | {archive.MEDIA_TYPE: {"schema": PACKED}}, "required": True}
+        content = {"examples": examples, "schema": schemas[route.operation_id, "question"]}
+        found["requestBody"] = {"content": {"application/json": content}, "required": True}
     found["responses"] = {
         "202" if isinstance(route, StudyRoute) else "200": {
             "description": "The answer." if asked else "The document.",
-            "content": dict(_representations(route, schemas.get((route.operation_id, "answer"), {}))),
+            "content": {route.media_type: _content(route, schemas.get((route.operation_id, "answer"), {}))},
         }
     }
-    if isinstance(route, PostRoute) and route.path in later:
-        found["parameters"] = [PREFER]
-        state = {"$ref": components.PREFIX + "StudyState"}
-        found["responses"]["202"] = {
-            "description": "With Prefer: respond-async, the state of a study of one answer.",
-            "content": {"application/json": {"schema": state}},
-        }
+    given = [*found.get("parameters", ()), *route.parameters]
+    given += (
+        [PREFER, REPEATED] if route.path in later and asked else [REPEATED] if isinstance(route, StudyRoute) else []
+    )
+    if given:
+        found["parameters"] = given
     for status in _problems_of(route):
         found["responses"][str(status)] = {"$ref": f"#/components/responses/{_response_name(status)}"}
     if asked:
@@ -215,23 +216,27 @@ def _operation(route: Route, schemas: Mapping[Place, Any], later: Collection[str
     return found
 
 
-def _representations(route: Route, answer: Any) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the media types of an answer, the Accept header chooses, and how each is documented."""
-    text = {"type": "string"}
+def _content(route: Route, answer: Any) -> dict[str, Any]:
+    """Return the one form of an answer that an operation has."""
     if isinstance(route, PostRoute):
-        yield "application/json", {"schema": answer}
-        if not isinstance(route, StudyRoute):
-            for media in route.representations:
-                yield media, {"schema": text}
-            yield archive.MEDIA_TYPE, {"schema": UNPACKED}
-    elif isinstance(route, ResourceRoute):
-        if route.example is not None:
-            yield "application/json", {"schema": answer, "example": dict(route.example)}
-        for media in route.representations:
-            yield media, {"schema": text if media.startswith("text/") else text | {"format": "binary"}}
-    else:
-        schema = answer if route.media_type == "application/json" else text
-        yield route.media_type, {"schema": schema} | ({} if route.example is None else {"example": route.example()})
+        return {"schema": answer}
+    example = {} if route.example is None else {"example": route.example()}
+    return {"schema": answer if route.media_type == "application/json" else {"type": "string"}} | example
+
+
+def _in_form(operation: Mapping[str, Any], media: str, ending: str) -> dict[str, Any]:
+    """Return an operation whose answer is not JSON but has another media type."""
+    name = ending.removeprefix(".").replace(".", "_")
+    found = {key: entry for key, entry in operation.items() if key not in ("description", "parameters")}
+    found |= {"summary": f"{operation['summary']}: as {media}", "operationId": f"{operation['operationId']}_{name}"}
+    if places := [one for one in operation.get("parameters", ()) if one.get("in") == "path"]:
+        found["parameters"] = places
+    if "requestBody" in operation:
+        ((kind, content),) = operation["requestBody"]["content"].items()
+        found["requestBody"] = {"content": {kind: {"schema": content["schema"]}}, "required": True}
+    text = {"type": "string"} if media.startswith(("text/", SVG)) else {"type": "string", "format": "binary"}
+    answer = {"description": "The answer.", "content": {media: {"schema": text}}}
+    return found | {"responses": operation["responses"] | {"200": answer}}
 
 
 def _problems_of(route: Route) -> tuple[int, ...]:

@@ -4,7 +4,7 @@ import { $, color, make, onTheme, written } from "./dom.js";
 
 const STUDIES = "/v1/studies";
 const LARGEST_MAP = 250000;
-const NAMES = { "application/json": ["JSON", "json"], "application/x-npz": ["npz", "npz"], "application/vnd.apache.parquet": ["Parquet", "parquet"], "application/vnd.zarr+zip": ["Zarr", "zarr.zip"], "image/svg+xml": ["SVG", "svg"] };
+const NAMES = { "application/json": ["JSON", "json"], "application/x-npz": ["npz", "npz"], "application/vnd.apache.parquet": ["Parquet", "parquet"], "application/vnd.zarr+zip": ["Zarr", "zarr.zip"], "text/csv": ["CSV", "csv"], "image/svg+xml": ["SVG", "svg"] };
 const START = {
   question: { path: "/v1/rotation/precession", request: { body: { kind: "principal-moments", moments: [0.5, 0.8, 1.0] }, angular_velocity: [0.01, 1.0, 0.01] } },
   vary: [{ pointer: "/body/moments/0", min: 0.35, max: 0.65, count: 80 }, { pointer: "/body/moments/1", min: 0.68, max: 0.98, count: 80 }],

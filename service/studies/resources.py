@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import AsyncIterator, Callable, Hashable, Iterator
+from collections.abc import AsyncIterator, Callable, Hashable, Iterator, Mapping, Sequence
 from typing import Any
 
 import orjson
@@ -21,24 +21,43 @@ from service.routes.studies import PATH
 from service.routes.studies.views import RESULTS, STATE, StudyList, StudyResults, StudyState
 from service.routing import ResourceRoute
 from service.settings import Settings
-from service.studies import grids, tables
+from service.studies import comma_separated, grids, tables
 from service.studies.chunk_files import CorruptedChunk
 from service.studies.figures import figure
 from service.studies.results import Results
 from service.studies.states import JSON_TYPE, REPRESENTATIONS, signed, state_of
-from service.studies.store import storage_unavailable
+from service.studies.store import ORDERS, identity_of, storage_unavailable
 from service.studies.study import DISMISSED, SUCCESSFUL, Owner, Quotas, Study
 from service.studies.supervisor import Supervisor
 
 MOST_LISTED = 200
+"""Studies of a page of the list."""
+
+LONGEST_KEY = 255
+"""Bytes of an Idempotency-Key; the services that brought the header into use allow as many."""
+
+LONGEST_LIST = 10**9
+"""The last study that a page of the list may begin with: more than a database holds."""
 
 PAGE = 1000
 LONGEST_PAGE = 10_000
 """Members of a page of results, unless asked for otherwise, and at most."""
 
-WORDS_OF_PAGE = ("start", "count")
-"""What a page of results may be chosen by."""
 
+def _in_query(name: str, description: str, **schema: Any) -> dict[str, Any]:
+    return {"name": name, "in": "query", "description": description, "schema": schema}
+
+
+PAGE_PARAMETERS = (
+    _in_query("start", "The first of the members, 0 if left out.", type="integer", minimum=0),
+    _in_query("count", f"Of members, {PAGE} if left out.", type="integer", minimum=1, maximum=LONGEST_PAGE),
+)
+
+LIST_PARAMETERS = (
+    _in_query("start", "The first of the studies, 0 if left out.", type="integer", minimum=0),
+    _in_query("count", f"Of studies, {MOST_LISTED} if left out.", type="integer", minimum=1, maximum=MOST_LISTED),
+    _in_query("sort", "By which time, with a minus sign the latest first; -created if left out.", enum=[*ORDERS]),
+)
 
 EVENTS_EVERY = 0.25
 """Seconds between two looks at a study that is watched."""
@@ -71,7 +90,8 @@ class Studies:
                 "studies",
                 self.list_all,
                 StudyList,
-                example=signed({"studies": [STATE]}),
+                example=lambda: signed({"studies": [STATE], "next": None}),
+                parameters=LIST_PARAMETERS,
             ),
             ResourceRoute(
                 "GET",
@@ -81,7 +101,7 @@ class Studies:
                 "studies",
                 self.state,
                 StudyState,
-                example=signed(dict(STATE)),
+                example=lambda: signed(dict(STATE)),
             ),
             ResourceRoute(
                 "DELETE",
@@ -91,7 +111,7 @@ class Studies:
                 "studies",
                 self.dismiss,
                 StudyState,
-                example=signed({**STATE, "status": "dismissed"}),
+                example=lambda: signed({**STATE, "status": "dismissed"}),
             ),
             ResourceRoute(
                 "GET",
@@ -101,10 +121,9 @@ class Studies:
                 "studies",
                 self.results,
                 StudyResults,
-                description="`?start=` and `?count=` (at most 10000) choose the members of a page. Other media types "
-                "have all members.",
-                representations=(archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE, SVG),
-                example=signed(dict(RESULTS)),
+                representations=[kind for kind in REPRESENTATIONS if kind != JSON_TYPE],
+                example=lambda: signed(dict(RESULTS)),
+                parameters=PAGE_PARAMETERS,
             ),
             ResourceRoute(
                 "GET",
@@ -113,7 +132,7 @@ class Studies:
                 "The state of a study as server-sent events, until it ends",
                 "studies",
                 self.events,
-                representations=("text/event-stream",),
+                media_type="text/event-stream",
             ),
         )
 
@@ -128,17 +147,23 @@ class Studies:
             raise BudgetExceeded("seconds", round(seconds), round(limit), path=("vary",), remedy=remedy)
         # What has no place for its results is refused at once.
         await self._in_thread(self._supervisor.files)
-        if context.key is not None:
-            context.key.work(seconds)
         limits = self._settings
         most = Quotas(limits.max_studies, limits.max_address_studies, limits.max_studies_bytes)
         owner = Owner(_owner(context), "" if context.key is not None else str(context.client))
-        try:
-            identity = await run_in_daemon_thread(lambda: self._store.create(owner, body, known, most))
-        except Refusal:
+        once = context.headers.get(b"idempotency-key", b"")
+        if len(once) > LONGEST_KEY:
+            fault = Fault("Idempotency-Key", f"must have at most {LONGEST_KEY} bytes")
+            raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
+        identity = identity_of(owner, once) if once else ""
+        if not identity or not await self._in_thread(lambda: self._store.repeats(identity, body, known["path"])):
             if context.key is not None:
-                context.key.charge(-seconds)
-            raise
+                context.key.work(seconds)
+            try:
+                identity = await run_in_daemon_thread(lambda: self._store.create(owner, body, known, most, identity))
+            except Refusal:
+                if context.key is not None:
+                    context.key.charge(-seconds)
+                raise
         await run_in_daemon_thread(self._supervisor.ensure)
         study = await self._own(context, identity)
         location = f"{PATH}/{identity}".encode()
@@ -146,8 +171,17 @@ class Studies:
 
     async def list_all(self, context: RequestContext) -> None:
         """Answer with the client's studies."""
-        found = await self._in_thread(lambda: self._store.listed(_owner(context), MOST_LISTED))
-        await self._send(context, signed({"studies": [state_of(study) for study in found]}))
+        query = _query(context, LIST_PARAMETERS)
+        sort = query.get("sort", "-created")
+        if sort not in ORDERS:
+            fault = Fault("?sort", f"must be one of {', '.join(ORDERS)}")
+            raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
+        start = _whole(query, "start", 0, LONGEST_LIST, 0)
+        size = _whole(query, "count", 1, MOST_LISTED, MOST_LISTED)
+        # One more than is sent says whether there are more.
+        found = await self._in_thread(lambda: self._store.listed(_owner(context), ORDERS[sort], start, size + 1))
+        after = f"{PATH}?start={start + size}&count={size}&sort={sort}" if len(found) > size else None
+        await self._send(context, signed({"studies": [state_of(study) for study in found[:size]], "next": after}))
 
     async def state(self, context: RequestContext) -> None:
         """Answer with the state of a study."""
@@ -194,6 +228,7 @@ class Studies:
                     archive.MEDIA_TYPE: found.archive,
                     tables.MEDIA_TYPE: lambda: tables.table(found),
                     grids.MEDIA_TYPE: lambda: grids.grid(found, self._store.folder / "scratch"),
+                    comma_separated.MEDIA_TYPE: lambda: comma_separated.rows(found),
                     SVG: lambda: figure(found),
                 }[media]()
                 await context.stream_made_elsewhere(_stored(pieces), media.encode(), self._settings.stalled_seconds)
@@ -206,9 +241,7 @@ class Studies:
             raise Refusal("results-not-ready", detail, retry_after=2.0) from None
 
     async def _page(self, context: RequestContext, study: Study, found: Results) -> None:
-        query = parameters_of(context.scope)
-        refuse_parameters((name for name in query if name not in WORDS_OF_PAGE), "is not known here")
-        refuse_parameters((name for name in WORDS_OF_PAGE if len(query.get(name, ())) > 1), "must be given once")
+        query = _query(context, PAGE_PARAMETERS)
         start = _whole(query, "start", 0, study.count - 1, 0)
         size = _whole(query, "count", 1, LONGEST_PAGE, PAGE)
         stop = min(study.count, start + size)
@@ -307,8 +340,16 @@ def _owner(context: RequestContext) -> str:
     return "" if context.key is None else context.key.name
 
 
-def _whole(query: dict[str, list[str]], name: str, least: int, most: int, default: int) -> int:
-    given = query.get(name, [str(default)])[-1]
+def _query(context: RequestContext, known: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    """Return the parameters of the query, or refuse those that are not known or are repeated."""
+    query, names = parameters_of(context.scope), [one["name"] for one in known]
+    refuse_parameters((name for name in query if name not in names), "is not known here")
+    refuse_parameters((name for name in query if len(query[name]) > 1), "must be given once")
+    return {name: given for name, (given,) in query.items()}
+
+
+def _whole(query: Mapping[str, str], name: str, least: int, most: int, default: int) -> int:
+    given = query.get(name, str(default))
     if not (given.isascii() and given.isdigit() and len(given) < 16 and least <= int(given) <= most):
         fault = Fault(f"?{name}", f"must be a whole number from {least} to {most}")
         raise Refusal("invalid-parameter", headline([fault]), faults=[fault])

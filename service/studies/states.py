@@ -11,7 +11,7 @@ from service.responses import npz
 from service.responses.svg import SVG
 from service.routes.studies import PATH
 from service.schemas import SIGNATURE
-from service.studies import grids, tables
+from service.studies import comma_separated, grids, tables
 from service.studies.study import SUCCESSFUL, Study
 
 JSON_TYPE = "application/json"
@@ -21,6 +21,7 @@ REPRESENTATIONS: dict[str, str | None] = {
     npz.MEDIA_TYPE: None,
     tables.MEDIA_TYPE: "pyarrow",
     grids.MEDIA_TYPE: "zarr",
+    comma_separated.MEDIA_TYPE: None,
     SVG: None,
 }
 """Media types of results, each with the optional package that writes it."""

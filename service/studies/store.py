@@ -11,8 +11,10 @@ import secrets
 import sqlite3
 import time
 import zlib
+from base64 import urlsafe_b64encode
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from hashlib import sha256
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -30,6 +32,16 @@ SHARE_OF_ONE = 0.5
 
 _COMPRESSED = b"\x78"
 """First byte of a compressed request (RFC 1950); no JSON text begins with it."""
+
+ID_BYTES = 18
+"""Of the id of a study: 144 bits, which nobody guesses."""
+
+ORDERS = {
+    sign + name: f"{name} {direction}"
+    for name in ("created", "started", "finished")
+    for sign, direction in (("-", "DESC"), ("", "ASC"))
+}
+"""Orders of lists, by the names that clients give them; times that there are not yet count as the earliest."""
 
 _STUDY = """SELECT id, owner, plan, status, message, created, started, finished, done, failed, seconds FROM studies """
 
@@ -85,15 +97,15 @@ class Store:
             return "it cannot be written to"
         return reason_of(fault)
 
-    def create(self, owner: Owner, request: bytes, plan: Mapping[str, Any], most: Quotas) -> str:
-        """Record a study and return its id, which cannot be guessed.
+    def create(self, owner: Owner, request: bytes, plan: Mapping[str, Any], most: Quotas, identity: str = "") -> str:
+        """Record a study and return its id, which cannot be guessed unless one is given.
 
         Raises
         ------
         Refusal
             429 for too many unfinished studies, 503 for too many bytes.
         """
-        identity = secrets.token_urlsafe(18)
+        identity = identity or secrets.token_urlsafe(ID_BYTES)
         body = zlib.compress(request, 1)
         # Of clients without keys, each has an address; with keys, a client may have many.
         own = ("owner = ?", (owner.name,)) if owner.name else ("owner = ? AND address = ?", tuple(owner))
@@ -123,6 +135,21 @@ class Store:
         found = None if row is None else _study(row)
         return found if found is not None and owner in (None, found.owner) else None
 
+    def repeats(self, identity: str, request: bytes, path: str) -> bool:
+        """Return whether there is a study with an id already.
+
+        Raises
+        ------
+        Refusal
+            If it is that of another request.
+        """
+        known = self.get(identity)
+        if known is None:
+            return False
+        if (self.request(identity), known.plan["path"]) != (request, path):
+            raise Refusal("idempotency-key-reused", "another request was sent with this Idempotency-Key")
+        return True
+
     def request(self, identity: str) -> bytes:
         """Return the request of a study as it was sent, which may have megabytes."""
         with self._connected() as connection:
@@ -130,9 +157,9 @@ class Store:
         sent = b"" if row is None else bytes(row[0])
         return zlib.decompress(sent) if sent.startswith(_COMPRESSED) else sent
 
-    def listed(self, owner: str, limit: int) -> list[Study]:
-        """Return an owner's studies, the latest first."""
-        return self._where("WHERE owner = ? ORDER BY created DESC, id LIMIT ?", (owner, limit))
+    def listed(self, owner: str, order: str, start: int, count: int) -> list[Study]:
+        """Return some of an owner's studies in one of `ORDERS`."""
+        return self._where(f"WHERE owner = ? ORDER BY {order}, id LIMIT ? OFFSET ?", (owner, count, start))
 
     def unfinished(self) -> list[Study]:
         """Return every study that is not finished, the earliest first."""
@@ -233,6 +260,12 @@ class Store:
 
 Condition = tuple[str, tuple[str, ...]]
 """Which studies are counted: SQL and its values."""
+
+
+def identity_of(owner: Owner, name: bytes) -> str:
+    """Return the id of the study that an owner has given a name."""
+    digest = sha256(json.dumps(owner).encode() + name).digest()
+    return urlsafe_b64encode(digest[:ID_BYTES]).decode()
 
 
 def _require_few(connection: sqlite3.Connection, which: Condition, most: int, limit: str) -> None:

@@ -73,13 +73,23 @@ def as_json(value: Any) -> Any:
     return [as_json(entry) for entry in value] if isinstance(value, list) else value
 
 
-def test_the_generated_modules_are_those_of_the_document() -> None:
-    command = [sys.executable, "-c", "import generate, json; print(json.dumps(generate.modules()))"]
-    done = subprocess.run(
-        command, cwd=ROOT / "clients" / "python", capture_output=True, text=True, check=True, timeout=200
-    )
-    for name, text in json.loads(done.stdout).items():
-        assert (ROOT / "clients" / "python" / "polhode_client" / name).read_text() == text, "run `make openapi`"
+def test_a_study_that_is_sent_again_is_the_same_study() -> None:
+    client, asked = answering(busy(503, **{"retry-after": "0"}), *(2 * [httpx.Response(202, json={"jobID": "x"})]))
+    question: Any = {"path": "/v1/rotation/wobble", "request": {"period": 430}}
+    for _ in range(2):
+        client.create_study(question=question, vary=[], quantities=[])
+    first, again, other = (request.headers["idempotency-key"] for request in asked)
+    assert first == again != other
+
+
+def test_parameters_of_the_address_are_those_that_are_given() -> None:
+    client, asked = answering(*(2 * [httpx.Response(200, json={})]))
+    client.list_studies()
+    client.get_study_results("x", start=3, count=7)
+    assert [str(request.url) for request in asked] == [
+        "http://test/v1/studies",
+        "http://test/v1/studies/x/results?start=3&count=7",
+    ]
 
 
 def test_every_operation_is_a_method_of_both_clients() -> None:

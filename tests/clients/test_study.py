@@ -42,7 +42,7 @@ class Service:
     def dismiss_study(self, study: str) -> documents.StudyState:
         return cast(documents.StudyState, {"status": "dismissed"})
 
-    def archive(self, study: str) -> dict[str, Any]:
+    def get_study_results_npz(self, study: str) -> dict[str, Any]:
         return self._results
 
 

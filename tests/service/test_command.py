@@ -31,8 +31,8 @@ class PlayedService(BaseHTTPRequestHandler):
         self._write(202, {"jobID": "one", "status": "accepted", "progress": 0})
 
     def do_GET(self) -> None:
-        if self.path.endswith("/results"):
-            self._write(200, {"accept": self.headers["Accept"]})
+        if "/results" in self.path:
+            self._write(200, {"path": self.path})
         else:
             self._write(200, {"jobID": "one", "status": self.states.pop(0), "progress": 50})
 
@@ -78,7 +78,7 @@ def test_runs_a_study(played: str, tmp_path: Path) -> None:
     file, output = tmp_path / "study.json", tmp_path / "results.parquet"
     file.write_text('{"count": 2}')
     main(["study", str(file), "--url", played, "--output", str(output)])
-    assert json.loads(output.read_text()) == {"accept": "application/vnd.apache.parquet"}
+    assert json.loads(output.read_text()) == {"path": "/v1/studies/one/results.parquet"}
 
 
 def test_shows_the_problem_of_a_study(played: str, tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 """A typed client of the Polhode service: every operation as a method, arrays as numpy arrays."""
 
 from polhode_client.client import AsyncClient, Client
-from polhode_client.operations import Operation
+from polhode_client.operation import Operation
 from polhode_client.progress import Progress, bar
 from polhode_client.refused import Refused
 

@@ -78,9 +78,11 @@ def _plain(value: Any, arrays: dict[str, NDArray[Any]] | None) -> Any:
 
 
 def read_answer(content: bytes, media: str) -> Any:
-    """Return a JSON document or an archive with its arrays of numbers as numpy arrays; an empty one stays a list."""
-    if media != ARCHIVE:
+    """Return an answer: documents and archives with arrays of numbers as numpy arrays (an empty one stays a list)."""
+    if media == "application/json":
         return _with_arrays(json.loads(content), {})
+    if media != ARCHIVE:
+        return content.decode() if media.startswith(("text/", "image/svg")) else content
     with ZipFile(io.BytesIO(content)) as archive:
         document = json.loads(archive.read(METADATA))
         arrays = {

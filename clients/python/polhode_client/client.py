@@ -11,9 +11,9 @@ import anyio
 import httpx
 
 from polhode_client import documents
-from polhode_client.arrays import ARCHIVE
 from polhode_client.exchange import Received, Sent, exchange
-from polhode_client.operations import OPERATIONS, AsyncOperations, Operation, Operations
+from polhode_client.operation import Operation
+from polhode_client.operations import OPERATIONS, AsyncOperations, Operations
 from polhode_client.progress import Progress, Reporting
 from polhode_client.study import Study
 
@@ -99,13 +99,10 @@ class Client(Settings, Operations):
         """Submit a study and return it; it goes on in the service."""
         return Study(self, self.create_study(**question)["jobID"])
 
-    def archive(self, study: str) -> Mapping[str, Any]:
-        """Return all results of a study: arrays, and what their columns mean."""
-        found: Mapping[str, Any] = self._ask("get_study_results", None, ARCHIVE, study=study)
-        return found
-
-    def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
-        steps = exchange(OPERATIONS[name].at(**places), question, media, self.patience)
+    def _ask(
+        self, name: str, question: Mapping[str, Any] | None, query: Mapping[str, Any] | None, **places: str
+    ) -> Any:
+        steps = exchange(OPERATIONS[name].at(**places), question, query, self.patience)
         step = next(steps)
         while True:
             received = None
@@ -161,8 +158,10 @@ class AsyncClient(Settings, AsyncOperations):
         """Close the connections."""
         await self._http.aclose()
 
-    async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
-        steps = exchange(OPERATIONS[name].at(**places), question, media, self.patience)
+    async def _ask(
+        self, name: str, question: Mapping[str, Any] | None, query: Mapping[str, Any] | None, **places: str
+    ) -> Any:
+        steps = exchange(OPERATIONS[name].at(**places), question, query, self.patience)
         step = next(steps)
         while True:
             received = None

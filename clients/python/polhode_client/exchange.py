@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from typing import Any
+from urllib.parse import urlencode
+from uuid import uuid4
 
 from polhode_client.arrays import ARCHIVE, body_of, read_answer
-from polhode_client.operations import Operation
+from polhode_client.operation import Operation
 from polhode_client.refused import Refused
 
 BUSY = (429, 503)
@@ -41,15 +43,15 @@ Step = Sent | float
 def exchange(
     operation: Operation,
     question: Mapping[str, Any] | None,
-    media: str | None,
+    query: Mapping[str, Any] | None,
     patience: float,
 ) -> Generator[Step, Received | None, Any]:
     """Yield what is to be done, and return the answer.
 
     Parameters
     ----------
-    media : str or None
-        Media type of a text; None for a document.
+    query : mapping or None
+        Parameters of the address; those that are None are left out.
     patience : float
         Longest sum of the waits before a request is sent again (s).
 
@@ -58,17 +60,23 @@ def exchange(
     Refused
         With the service's problem.
     """
-    accepted = media or ("application/json" if question is None else f"{ARCHIVE}, application/json;q=0.9")
+    # Questions to operations that answer JSON are answered as archives, too, which hold arrays as they are.
+    archived = question is not None and operation.media == "application/json" and not operation.once
+    accepted = f"{ARCHIVE}, application/json;q=0.9" if archived else operation.media
     headers = {"accept": f"{accepted}, application/problem+json;q=0.1"}
+    if operation.once:
+        headers["idempotency-key"] = uuid4().hex
+    given = urlencode({name: value for name, value in (query or {}).items() if value is not None})
+    path = f"{operation.path}?{given}" if given else operation.path
     body = None
     if question is not None:
         body, headers["content-type"] = body_of(question)
     while True:
-        received = yield Sent(operation.method, operation.path, headers, body)
+        received = yield Sent(operation.method, path, headers, body)
         assert received is not None
         if received.status < 400:
             kind = received.headers.get("content-type", "").partition(";")[0]
-            return received.body.decode() if media not in (None, ARCHIVE) else read_answer(received.body, kind)
+            return read_answer(received.body, kind)
         wait = _seconds(received.headers.get("retry-after"))
         if received.status not in BUSY or wait is None or wait > patience:
             raise Refused.read(received.status, received.body, wait)

@@ -23,7 +23,7 @@ class Connection(Protocol):
     def dismiss_study(self, study: str) -> documents.StudyState:
         """Stop a study."""
 
-    def archive(self, study: str) -> Mapping[str, Any]:
+    def get_study_results_npz(self, study: str) -> dict[str, Any]:
         """Return all results of a study."""
 
 
@@ -98,7 +98,7 @@ class Study:
         ``inputs`` and ``figures`` are arrays with a row per member, ``failures`` and ``warnings`` labels from 1 into
         ``failure_names`` and ``warning_names``, 0 for none; ``axes`` and ``columns`` say what the columns are.
         """
-        return self._client.archive(self.id)
+        return self._client.get_study_results_npz(self.id)
 
     def to_xarray(self) -> Any:
         """Return all results as an `xarray.Dataset`; needs xarray, which is imported only here.

@@ -68,9 +68,10 @@ class StudyState(StudyStatus, Signed):
 
 
 class StudyList(Signed):
-    """The studies of a client, the latest first."""
+    """The studies of a client, a page at a time."""
 
     studies: list[StudyStatus]
+    next: str | None = Field(description="Address of the next page; null where there is none.")
 
 
 STATE: Mapping[str, Any] = {

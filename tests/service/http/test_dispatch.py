@@ -4,6 +4,7 @@ import asyncio
 import itertools
 import json
 import logging
+from datetime import date
 from typing import Any
 
 import anyio
@@ -18,6 +19,8 @@ from starlette.routing import Mount
 from service import app as app_module
 from service.app import Service
 from service.http import dispatch
+from service.http.deprecation import Deprecation
+from service.openapi import document
 from service.responses.json_rows import CHUNK
 from service.settings import Settings
 from tests.service import hostile
@@ -195,12 +198,44 @@ async def test_unknown_paths_and_methods(client: httpx.AsyncClient) -> None:
         response = await client.post(path, json=GOOD)
         assert (response.status_code, response.json()["code"]) == (404, "not-found")
     for method, path, allowed in (
-        ("GET", "/v1/toy", "POST"),
-        ("DELETE", "/healthz", "GET, HEAD"),
-        ("TRACE", "/", "GET, HEAD"),
+        ("GET", "/v1/toy", "POST, OPTIONS"),
+        ("DELETE", "/healthz", "GET, HEAD, OPTIONS"),
+        ("TRACE", "/", "GET, HEAD, OPTIONS"),
     ):
         response = await client.request(method, path)
         assert (response.status_code, response.headers["allow"]) == (405, allowed)
+        options = await client.options(path)
+        assert (options.status_code, options.headers["allow"], options.content) == (204, allowed, b"")
+    assert (await client.options("/nothing")).status_code == 404
+
+
+async def test_a_path_with_an_ending_answers_in_its_form(client: httpx.AsyncClient) -> None:
+    accepted = await client.post("/v1/toy", json=GOOD, headers={"accept": "application/x-npz"})
+    found = await client.post("/v1/toy.npz", json=GOOD, headers={"accept": "application/json"})
+    assert (found.status_code, found.content) == (200, accepted.content)
+    assert found.headers["content-type"] == "application/x-npz"
+    assert (await client.post("/v1/toy.svg", json=GOOD)).status_code == 404
+
+
+async def test_operations_that_are_to_end_say_when(monkeypatch: pytest.MonkeyPatch) -> None:
+    ending = Deprecation(date(2026, 11, 26), date(2027, 6, 1), "/changes")
+    monkeypatch.setattr(dispatch, "DEPRECATED", {"ask_toy": ending})
+    monkeypatch.setattr(document, "DEPRECATED", {"ask_toy": ending})
+    announcing = inline_toys()
+    async with client_of(announcing) as client:
+        for answer in (await client.post("/v1/toy", json=GOOD), await client.post("/v1/toy", json={})):
+            # 2026-11-26 00:00 UTC is 20783 days after 1970-01-01.
+            assert answer.headers["deprecation"] == f"@{20783 * 86400}"
+            assert answer.headers["sunset"] == "Tue, 01 Jun 2027 00:00:00 GMT"
+            assert answer.headers["link"] == '</changes>; rel="deprecation"'
+        assert "sunset" not in (await client.get("/healthz")).headers
+    marked = [
+        one["operationId"]
+        for verbs in announcing.openapi()["paths"].values()
+        for one in verbs.values()
+        if "deprecated" in one
+    ]
+    assert marked == ["ask_toy"]
 
 
 @pytest.mark.parametrize(
@@ -376,8 +411,9 @@ def test_any_bytes_in_any_parts_get_a_problem(cuts: list[int], body: bytes) -> N
 def test_no_path_is_declared_twice(service: Service) -> None:
     ours = [(route.method, route.path) for route in service.table]
     theirs = [(method, route.path) for route in service.routes for method in route.methods]  # type: ignore[attr-defined]
-    assert sorted(ours) == sorted(theirs)
     assert len(set(ours)) == len(ours)
+    assert len(set(theirs)) == len(theirs)
+    assert set(ours) <= set(theirs)
 
 
 async def test_the_application_may_be_mounted(service: Service, client: httpx.AsyncClient) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import csv
 import io
 import json
 import os
@@ -26,7 +27,7 @@ from service.settings import Settings
 from service.studies import resources
 from service.studies.database import DATABASE
 from service.studies.folder import Ownership
-from service.studies.store import Store
+from service.studies.store import Store, identity_of
 from service.studies.study import Owner, Quotas
 from service.studies.supervisor import Supervisor
 from tests.service.conftest import INLINE, client_of
@@ -216,7 +217,19 @@ async def test_all_results_as_an_archive_a_table_and_a_grid(desk_on: Desks, in_p
         figure = await get(client, place, "image/svg+xml")
         assert figure.headers["content-type"] == "image/svg+xml"
         assert figure.content.startswith(b"<svg")
-        assert (await get(client, place, "text/csv")).status_code == 406
+        table = [*csv.reader((await client.get(f"{place}/results.csv")).text.splitlines())]
+        assert table[0] == [
+            "member",
+            "/angular_velocity/0",
+            "/body/moments/2",
+            *GRID["quantities"],
+            "failure",
+            "warnings",
+        ]
+        assert [row[3] for row in table[1:]] == ["" if entry is None else str(entry) for entry in expected]
+        assert [row[5] for row in table[1:]] == ["", "unphysical-inertia"] * 3
+        assert [(row[1], row[2]) for row in table[1:3]] == [("0.0", "3.0"), ("0.0", "7.0")]
+        assert (await get(client, place, "text/html")).status_code == 406
         for query in ("start=1", "count=2", "first=1", "start"):
             everything = {"accept": "application/x-npz"}
             response = await client.get(f"{place}/results?{query}", headers=everything)
@@ -582,6 +595,38 @@ async def test_a_folder_that_cannot_be_written_to_is_said(tmp_path: Path, monkey
         assert "cannot be written to" in response.json()["detail"]
 
 
+async def test_a_request_that_is_repeated_is_one_study(tmp_path: Path) -> None:
+    async with client_at(tmp_path) as client:
+        first, again = [await submitted(client, GRID, **{"idempotency-key": "a"}) for _ in range(2)]
+        other = await submitted(client, GRID, **{"idempotency-key": "b"})
+        assert first == again != other
+        changed = await client.post(
+            "/v1/studies", json=GRID | {"quantities": ["/time/0"]}, headers={"idempotency-key": "a"}
+        )
+        assert (changed.status_code, changed.json()["code"]) == (422, "idempotency-key-reused")
+        long = await client.post("/v1/studies", json=GRID, headers={"idempotency-key": 256 * "a"})
+        assert (long.status_code, long.json()["errors"][0]["pointer"]) == (422, "Idempotency-Key")
+        # The same name of another client is another study.
+        assert identity_of(Owner("", "192.0.2.1"), b"a") != identity_of(Owner("", "192.0.2.2"), b"a")
+
+
+async def test_studies_are_listed_in_pages_and_orders(tmp_path: Path) -> None:
+    async with client_at(tmp_path) as client:
+        made = [(await submitted(client)).rpartition("/")[2] for _ in range(5)]
+        found: list[str] = []
+        place = "/v1/studies?count=2&sort=created"
+        while place:
+            page = (await client.get(place)).json()
+            found += [study["jobID"] for study in page["studies"]]
+            place = page["next"]
+        assert found == made
+        latest = (await client.get("/v1/studies?count=3")).json()["studies"]
+        assert [study["jobID"] for study in latest] == made[:1:-1]
+        for query in ("sort=name", "count=0", "start=-1", "page=2", "count=1&count=2"):
+            refused = await client.get(f"/v1/studies?{query}")
+            assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "?" + query.partition("=")[0])
+
+
 async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> None:
     async with client_at(tmp_path) as client:
         headers = {"content-type": "application/x-npz"}
@@ -589,7 +634,7 @@ async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> N
         assert (await client.post("/v1/studies", json=GRID, headers={"accept": "text/html"})).status_code == 406
         assert (await client.put("/v1/studies", json=GRID)).status_code == 405
         other = await client.patch("/v1/studies/of-somebody")
-        assert (other.status_code, other.headers["allow"]) == (405, "GET, HEAD, DELETE")
+        assert (other.status_code, other.headers["allow"]) == (405, "GET, HEAD, DELETE, OPTIONS")
 
 
 async def test_old_studies_are_removed(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
