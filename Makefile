@@ -178,7 +178,14 @@ attacks: kernels
 clients: kernels
 	$(BIN)/python -m pytest -q tests/clients/generated_clients.py
 
-.PHONY: fuzz fuzz-loop schemathesis soak scheduling health calibration image dial studies
+.PHONY: fuzz fuzz-loop schemathesis soak scheduling health calibration image dial studies mutants
+
+# Small changes of the code, each of which a test has to notice: MUTANTS of them, drawn by MUTANTS_SEED.
+MUTANTS ?= 300
+MUTANTS_SEED ?= 1
+
+mutants: kernels
+	$(BIN)/python -m tests.mutation $(MUTANTS) $(MUTANTS_SEED)
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py

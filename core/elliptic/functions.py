@@ -15,14 +15,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from core.compiled import bits_of, double_from_bits, fma, kernel
-from core.double_double import Pair, dd_div, two_prod, two_sum
-from core.elliptic.integrals import check_parameter, complete_k, moduli
-from core.elliptic.lattice import Lattice, lattice
-from core.errors import AccuracyUnreachable, InvalidParameter
+from core.double_double import Pair, two_prod, two_sum
+from core.elliptic.lattice import Lattice
 
 LARGEST_QUARTER = 2.0**50
 """Beyond this many quarter periods the rounding of a phase is no longer small compared with a period."""
@@ -173,55 +168,3 @@ def separatrix_at(xh: float, xl: float) -> tuple[float, float]:
         sech = 1.0 / c
         tanh = s * sech
     return tanh if xh >= 0.0 else -tanh, sech
-
-
-@kernel()
-def _jacobi(u: NDArray[np.float64], m: float, m1: float, out: NDArray[np.float64]) -> None:
-    if m1 == 0.0:
-        for i in range(u.size):
-            out[0, i], out[1, i] = separatrix_at(u[i], 0.0)
-            out[2, i] = out[1, i]
-        return
-    kh, kl, ch, cl = moduli(m, m1)
-    lat = lattice(kh, kl, ch, cl)
-    rate, rate_tail = dd_div(1.0, 0.0, lat.K, lat.K_tail)
-    for i in range(u.size):
-        n, r, r_tail = split_phase(rate, rate_tail, u[i], 0.0, 0.0)
-        out[0, i], out[1, i], out[2, i] = jacobi_at(lat, n, r, r_tail)
-
-
-def jacobi(u: ArrayLike, m: float, m1: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return sn, cn and dn of `u` for parameter m with complement m1 = 1 - m.
-
-    The smaller of m and m1 is taken as exact. Accurate to a few units in the last place at any `u`, even near m = 1,
-    because whole quarter periods are removed in double-double and the series are centred on the nearest one.
-
-    Parameters
-    ----------
-    u : array_like
-        Real arguments, any shape.
-    m, m1 : float
-        Parameter and complementary parameter, both in [0, 1].
-
-    Returns
-    -------
-    sn, cn, dn : ndarray
-        Of the shape of `u`.
-
-    Raises
-    ------
-    AccuracyUnreachable
-        If `u` is more than 2^50 quarter periods, or m1 is below about 1e-570 and not 0.
-    """
-    check_parameter(m, m1)
-    arguments = np.asarray(u, dtype=np.float64)
-    flat = np.ascontiguousarray(arguments).reshape(-1)
-    largest = float(np.max(np.abs(flat), initial=0.0))
-    if not math.isfinite(largest):
-        raise InvalidParameter("u", "be finite")
-    if m1 > 0.0 and largest / complete_k(m, m1) > LARGEST_QUARTER:
-        raise AccuracyUnreachable(2.0**-53, 1.0, "the argument lies beyond 2^50 quarter periods", path=("u",))
-    out = np.empty((3, flat.size))
-    _jacobi(flat, float(m), float(m1), out)
-    shape = arguments.shape
-    return out[0].reshape(shape), out[1].reshape(shape), out[2].reshape(shape)

@@ -14,7 +14,6 @@ import math
 
 from core.compiled import kernel
 from core.double_double import (
-    PI,
     Pair,
     dd_add,
     dd_add_d,
@@ -24,12 +23,7 @@ from core.double_double import (
     dd_sqr,
     dd_sqrt,
     dd_sub,
-    two_sum,
 )
-from core.errors import AccuracyUnreachable, InvalidParameter
-
-SMALLEST_COMPLEMENT = 1e-285
-"""Smallest complementary modulus k' (so m1 about 1e-570) whose low part is still a normal number."""
 
 
 @kernel()
@@ -102,20 +96,6 @@ def rf_of_roots(ah: float, al: float, bh: float, bl: float, ch: float, cl: float
 
 
 @kernel()
-def moduli(m: float, m1: float) -> tuple[float, float, float, float]:
-    """Return k and k' as pairs; the smaller of m and m1 is taken as exact and the other as its complement."""
-    if m1 < m:
-        ch, cl = dd_sqrt(m1, 0.0)
-        h, low = two_sum(1.0, -m1)
-        kh, kl = dd_sqrt(h, low)
-    else:
-        kh, kl = dd_sqrt(m, 0.0)
-        h, low = two_sum(1.0, -m)
-        ch, cl = dd_sqrt(h, low)
-    return kh, kl, ch, cl
-
-
-@kernel()
 def one_less_e_over_k(m: float, k1: float) -> float:
     """Return 1 - E(m)/K(m) to a few digits, k1 the complementary modulus.
 
@@ -129,50 +109,3 @@ def one_less_e_over_k(m: float, k1: float) -> float:
         if c < 1e-9:
             break
     return total
-
-
-@kernel()
-def _complete_k(m: float, m1: float) -> float:
-    _, _, ch, cl = moduli(m, m1)
-    gh, gl = agm_dd(ch, cl)
-    return dd_div(0.5 * PI[0], 0.5 * PI[1], gh, gl)[0]
-
-
-@kernel()
-def _carlson_rf(x: float, y: float, z: float) -> float:
-    ah, al = dd_sqrt(x, 0.0)
-    bh, bl = dd_sqrt(y, 0.0)
-    ch, cl = dd_sqrt(z, 0.0)
-    return rf_of_roots(ah, al, bh, bl, ch, cl)[0]
-
-
-def check_parameter(m: float, m1: float) -> None:
-    """Raise unless m and m1 are a parameter and its complement, m1 not too small for its low part to be normal."""
-    if not (0.0 <= m <= 1.0 and 0.0 <= m1 <= 1.0 and abs(m + m1 - 1.0) <= 1e-15):
-        raise InvalidParameter("m", "lie in [0, 1] with m + m1 = 1")
-    if 0.0 < m1 < SMALLEST_COMPLEMENT**2:
-        raise AccuracyUnreachable(2.0**-53, 1.0, f"the complementary parameter {m1:g} is too small", path=("m1",))
-
-
-def complete_k(m: float, m1: float) -> float:
-    """Return the complete elliptic integral of the first kind, K(m), with m1 = 1 - m > 0 given too.
-
-    Source: K = pi / (2 agm(1, sqrt(m1))), DLMF 19.8.5.
-    """
-    check_parameter(m, m1)
-    if m1 == 0.0:
-        raise InvalidParameter("m1", "be greater than 0: K(1) is infinite")
-    return float(_complete_k(m, m1))
-
-
-def carlson_rf(x: float, y: float, z: float) -> float:
-    """Return Carlson's symmetric integral R_F(x, y, z), arguments finite and >= 0, at most one of them 0.
-
-    Source: duplication theorem, DLMF 19.36(i).
-    """
-    for name, value in zip("xyz", (x, y, z), strict=True):
-        if not (math.isfinite(value) and value >= 0.0):
-            raise InvalidParameter(name, "be finite and at least 0")
-    if (x, y, z).count(0.0) > 1:
-        raise InvalidParameter("x", "not be 0 together with another argument: the integral diverges")
-    return float(_carlson_rf(x, y, z))

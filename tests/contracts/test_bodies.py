@@ -23,12 +23,12 @@ from pydantic import TypeAdapter
 from core import bodies
 from core.bodies import Body
 from core.bodies.composite import Composite, Part
-from core.bodies.examples import EXAMPLES
 from core.bodies.mass_properties import MassProperties
 from core.bodies.measured import InertiaTensor, PointMasses
 from core.bodies.mesh import Mesh
 from core.bodies.uniform import Uniform
 from core.quantities import members_of
+from tests.core.bodies.example_bodies import EXAMPLES
 
 CONTEXT = mp.mp.clone()
 CONTEXT.dps = 30

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.bodies.examples import deck_of_cards, t_handle_points
 from examples import ask
 from examples.ask import names, path_of, request_of
+from tests.core.bodies.example_bodies import deck_of_cards, t_handle_points
 
 ROOT = Path(__file__).parents[2]
 REFUSED = {"rotation/ensemble/thirty-starts-overflow": ("invalid-parameter", "/method/step")}

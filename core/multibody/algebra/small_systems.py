@@ -22,23 +22,6 @@ _CUT = 1e-13
 
 
 @kernel()
-def solutions(systems: Floats, right: Floats) -> tuple[Floats, np.ndarray]:
-    """Return the solution of every system, and which are nearly singular: there it is the shortest of least squares.
-
-    Parameters
-    ----------
-    systems : ndarray, shape (c, k, k)
-    right : ndarray, shape (c, k)
-        Finite, as the systems.
-    """
-    found = right.copy()
-    singular = np.zeros(len(systems), dtype=np.bool_)
-    for s in range(len(systems)):
-        singular[s] = solve(systems[s], found[s])
-    return found, singular
-
-
-@kernel()
 def solve(system: Floats, x: Floats) -> bool:
     """Put the solution in place of the right side `x`, in compiled code; return whether the system is nearly singular.
 

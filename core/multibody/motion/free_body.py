@@ -31,11 +31,6 @@ _SMALL = 2.0**-98
 
 _ENOUGH = 110
 """Bits to which an axis has to be known."""
-_PER_RADIAN = 8
-"""Nodes to a radian at the fastest rate: fifty to an oscillation."""
-
-_MOST_NODES = 40_000
-"""Nodes of one motion: places and rates at so many are 12 MB in pairs."""
 
 Sample = Callable[[Ball], tuple[list[Ball], list[Ball]]]
 """From a time to the angular velocity in body axes and the quaternion from the axes of the start."""

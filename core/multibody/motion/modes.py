@@ -284,17 +284,6 @@ class Modes(Motion):
             self._known["doubles"] = roots, columns.reshape(-1, len(start))
         return self._known["doubles"]  # type: ignore[no-any-return]
 
-    @property
-    def _fastest(self) -> float:
-        """The largest characteristic root (1/s)."""
-        return max((float(abs(acb(mode.growth, mode.frequency))) for mode in self.modes), default=1.0)
-
-    @property
-    def in_doubles_until(self) -> float:
-        """Time up to which `in_doubles` answers (s), but for rounding."""
-        fastest = self._fastest
-        return 0.999 * FEW_RADIANS / fastest if fastest > 0.0 else math.inf
-
     def keeps_positive(self, length: Poly) -> bool:
         """Return whether the amplitudes of the modes show it."""
         return self.lowest(length) > 0.0

@@ -9,7 +9,6 @@ from typing import Protocol
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import BudgetExceeded
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly
 from core.multibody.equations.packed import pair
@@ -84,18 +83,6 @@ def in_pairs(states: Sequence[BallState], count: int) -> tuple[Floats, Floats]:
         for i in range(count):
             q[s, i], v[s, i] = pair(state.q[i], 0), pair(state.v[i], 0)
     return q, v
-
-
-def check_sample_count(count: float, most: int) -> None:
-    """Raise `BudgetExceeded` where a motion would have to be sampled more often than it may be."""
-    if count > most:
-        raise BudgetExceeded(
-            "samples for events",
-            count,
-            most,
-            path=("times",),
-            remedy="ask for a shorter time; with fewer samples something could be passed over",
-        )
 
 
 class Motion(Protocol):

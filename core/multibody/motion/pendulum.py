@@ -28,11 +28,6 @@ LATE = 2.0**-84
 closed form is the better model."""
 _ENOUGH = 2.0**-104
 """Share to which pairs of doubles hold a number."""
-_PER_RADIAN = 8
-"""Nodes to a radian at the fastest rate: fifty to an oscillation."""
-
-_MOST_NODES = 40_000
-"""Nodes of one motion, as of a free body."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,12 +12,6 @@ from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, entry, is_zero
 from core.multibody.motion.motion import BallState, Motion, States, in_pairs
 from core.multibody.table.table import Table
-
-_PER_RADIAN = 8
-"""Nodes to a radian: fifty to a turn."""
-
-_MOST_NODES = 400_000
-"""Nodes of one motion: the two components of the direction and their rates at so many are 26 MB in pairs."""
 
 FEW_RADIANS = 64.0
 """Up to which the sine of an angle in doubles is right to 2^-46."""
@@ -105,11 +98,6 @@ class Turning(Motion):
         if self.turn is not None:
             q[:, self.turn], v[:, self.turn] = float(self.table.q[self.turn]) + rate * times, rate
         return q, v
-
-    @property
-    def in_doubles_until(self) -> float:
-        """Time up to which `in_doubles` answers (s), but for rounding."""
-        return 0.999 * FEW_RADIANS / abs(float(self.rate)) if float(self.rate) else math.inf
 
 
 def turning(part: Table, chosen: Sequence[int]) -> Turning | None:

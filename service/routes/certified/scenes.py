@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-import numpy as np
-
 from core.certified.scenes import certified_scene, exact_scene
 from core.errors import InvalidParameter
 from core.scenes.named_scene import NamedScene
@@ -74,10 +72,6 @@ def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:
 
 def _samples(question: Any, budget: Budget) -> int:
     return 0 if question.times is None else affordable(question.times, question.digits, COLUMNS, budget)
-
-
-def _instants(times: Any, budget: Budget) -> Any:
-    return np.array(instants(times), dtype=object)
 
 
 class CertifiedSceneAnswer(Certified, SceneAnswer[DecimalString]):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from core.bodies import Body
-from core.bodies.examples import EXAMPLES
 from core.quantities import members_of
+from tests.core.bodies.example_bodies import EXAMPLES
 
 
 def test_the_examples_are_bodies_that_matter_can_have() -> None:

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import math
 import random
-from fractions import Fraction
 
 import mpmath
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.elliptic.integrals import SMALLEST_COMPLEMENT, agm_dd, carlson_rf, complete_k, moduli, rf_of_roots
-from core.errors import InvalidParameter
+from core.elliptic.integrals import agm_dd, rf_of_roots
 
 U = 2.0**-53
 SQUARE = 2.0**-106
@@ -50,24 +48,6 @@ def test_arithmetic_geometric_mean(k: float, part: float) -> None:
     tail = part * 0.49 * math.ulp(k) if k > 1e-270 else 0.0
     want = mpmath.agm(1, number(k, tail))
     assert abs(number(*agm_dd(k, tail)) - want) <= AGM_STEPS * AGM_STEP * want
-
-
-@settings(deadline=None, derandomize=True, max_examples=300)
-@given(small, st.booleans())
-def test_complete_integral_is_the_nearest_double_over_the_whole_range(least: float, near_one: bool) -> None:
-    m, m1 = (1.0 - least, least) if near_one else (least, 1.0 - least)
-    # The complement by Carlson's duplication, which shares nothing with the mean (DLMF 19.25.1).
-    complement = mpmath.mpf(least) if near_one else 1 - mpmath.mpf(least)
-    want = mpmath.elliprf(0, complement, 1)
-    assert abs(complete_k(m, m1) - want) <= (1 + 1e-13) * U * want
-
-
-def test_complete_integral_in_the_last_decades_before_the_refusal() -> None:
-    # DLMF 19.12.1: K = log(4/k') + O(m1 log m1), and m1 log m1 < 1e-297 here. The smallest double still is admitted.
-    for m1 in (1e-300, 2.3e-308, 5e-324):
-        want = mpmath.log(16 / mpmath.mpf(m1)) / 2
-        assert abs(complete_k(1.0, m1) - want) <= (1 + 1e-13) * U * want
-    assert SMALLEST_COMPLEMENT**2 == 0.0
 
 
 far_below = st.floats(-280, 0).map(lambda e: 10.0**e)
@@ -122,32 +102,3 @@ def test_complete_carlson_is_the_mean(b: float, c: float) -> None:
         mean = number(*agm_dd(h, float(ratio - h))) * high
         want = mpmath.pi / (2 * mean)
         assert abs(got - want) <= (AGM_STEPS * AGM_STEP + RF_STEPS * RF_STEP) * want
-
-
-@settings(deadline=None, derandomize=True, max_examples=300)
-@given(small, st.booleans())
-def test_moduli_are_complementary(least: float, near_one: bool) -> None:
-    m, m1 = (1.0 - least, least) if near_one else (least, 1.0 - least)
-    kh, kl, ch, cl = moduli(m, m1)
-    k2, c2 = (Fraction(kh) + Fraction(kl)) ** 2, (Fraction(ch) + Fraction(cl)) ** 2
-    exact = Fraction(least)
-    # A root is right to 3 u^2, its square to twice that, apart from underflow.
-    lost = 4 * Fraction(5e-324)
-    for got, want in ((c2, exact), (k2, 1 - exact)) if m1 < m else ((k2, exact), (c2, 1 - exact)):
-        assert abs(got - want) <= 7 * Fraction(SQUARE) * want + lost
-
-
-@settings(deadline=None, derandomize=True, max_examples=200)
-@given(*3 * [st.floats(-300, 300).map(lambda e: 10.0**e)])
-def test_carlson_of_doubles_is_the_nearest_double(x: float, y: float, z: float) -> None:
-    want = mpmath.elliprf(x, y, z)
-    assert abs(carlson_rf(x, y, z) - want) <= (1 + 1e-13) * U * want
-
-
-def test_what_has_no_value_is_refused() -> None:
-    for bad in ((0.3, 0.3), (-0.1, 1.1), (math.nan, 0.5), (1.0, 0.0)):
-        with pytest.raises(InvalidParameter):
-            complete_k(*bad)
-    for bad in ((0.0, 0.0, 1.0), (-1.0, 0.0, 1.0), (1.0, math.inf, 1.0), (1.0, 1.0, math.nan)):
-        with pytest.raises(InvalidParameter):
-            carlson_rf(*bad)

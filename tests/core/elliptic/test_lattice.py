@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.elliptic.integrals import moduli
 from core.elliptic.lattice import lattice, periods, theta_constants
+from tests.core.elliptic.parameters import moduli
 
 U = 2.0**-53
 SQUARE = 2.0**-106

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from core.bodies.composite import Composite, Part
-from core.bodies.examples import t_handle_points
 from core.bodies.measured import PointMasses, PrincipalMoments
 from core.bodies.solids import Ball
 from core.rotation.torque_free import TorqueFree
 from core.systems.error_statements import drifts
+from tests.core.bodies.example_bodies import t_handle_points
 
 CROSS = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 2, 0], [0, -2, 0], [0, 0, 3], [0, 0, -3]])
 

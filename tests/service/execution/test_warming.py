@@ -14,9 +14,6 @@ ROOT = Path(__file__).parents[3]
 Kernel = tuple[str, str]
 
 OF_NO_REQUEST = {
-    ("core.elliptic.functions", "_jacobi"),
-    ("core.elliptic.integrals", "_carlson_rf"),
-    ("core.elliptic.integrals", "_complete_k"),
     ("core.rotation.precession.constants", "angle_per_period"),
 }
 """Kernels that Python code calls for users of the library; requests reach them inside of other kernels only."""

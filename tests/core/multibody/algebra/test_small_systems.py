@@ -6,11 +6,19 @@ import numpy as np
 from flint import fmpq_mat
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
-from core.multibody.algebra.small_systems import solutions
+from core.arrays import Floats
+from core.multibody.algebra.small_systems import solve
 
 matrices = st.lists(st.lists(st.integers(-5, 5), min_size=4, max_size=4), min_size=4, max_size=4)
 vectors = st.lists(st.integers(-5, 5), min_size=4, max_size=4)
+
+
+def solutions(systems: Floats, right: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the solution of every system, and which are nearly singular."""
+    found = right.copy()
+    return found, np.array([solve(system, x) for system, x in zip(systems, found, strict=True)])
 
 
 @given(matrices, vectors)

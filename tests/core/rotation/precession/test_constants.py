@@ -16,7 +16,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.double_double import Scaled
-from core.elliptic.integrals import moduli
 from core.elliptic.lattice import periods
 from core.rotation.closed_form.circulation import amplitudes, circulation
 from core.rotation.closed_form.constants_of_motion import constants_of_motion
@@ -31,6 +30,7 @@ from core.rotation.precession.constants import (
     quarter_turn,
     turning,
 )
+from tests.core.elliptic.parameters import moduli
 from tests.core.rotation.closed_form.test_constants_of_motion import motion
 from tests.oracles.free_rotation import precession_per_period
 from tests.oracles.polhode import Polhode, accelerates
