@@ -32,6 +32,7 @@ from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
 from core.multibody.audit.searches import Searches
 from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of
+from core.multibody.audit.totals import check_totals, with_totals
 from core.multibody.audit.windows import NODES, check_windows, nodes
 from core.multibody.language.scene import Scene
 
@@ -106,6 +107,9 @@ class _Audit:
         states = states_of(description, answer, samples.times)
         sizes = Sizes(description, samples)
         check_samples(ledger, measures, samples, states, sizes)
+        if self.own_rows is not None:
+            behind_asked = slice(0 if asked is None else len(asked.part.times), None)
+            check_totals(ledger, description, samples.at(behind_asked), self.own_rows)
         check_equilibria(ledger, description, answer, self.random)
         if asked is not None:
             self._check_motion(ledger, samples, ahead, after, measures, asked, sizes)
@@ -114,7 +118,8 @@ class _Audit:
             if asked.searches is not None:
                 found = answer.trajectory
                 own = (np.zeros(0), {}) if found is None else (found.time, found.columns)
-                asked.searches.check(ledger, asked.part.columns, *own)
+                sought = with_totals(description, asked.whole, asked.searches.names, ledger.rounding)
+                asked.searches.check(ledger, sought, *own)
         return ledger.worst
 
     def _check_motion(
@@ -235,8 +240,8 @@ class _Audit:
             found = np.zeros(0) if searches is None else searches.times
             asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), repeated, struck, found])
             columns, count = sampler(asked, forces), len(asked) - len(found)
-            part = Part(asked[:count], columns, slice(0, count))
-            return _Asked(part, [half for _, half in placed], len(repeated), impacts, searches)
+            part, whole = Part(asked[:count], columns, slice(0, count)), Part(asked, columns, slice(None))
+            return _Asked(part, whole, [half for _, half in placed], len(repeated), impacts, searches)
         except MechanicsError:
             return None
 
@@ -258,7 +263,9 @@ class _Asked:
     Attributes
     ----------
     part : Part
-        At the start, in windows, after the period, beside impacts; its columns have those of the searches behind.
+        At the start, in windows, after the period, beside impacts.
+    whole : Part
+        With the times of the searches behind them.
     halves : list of float
         Half of the widths of the windows (s).
     repeated : int
@@ -269,6 +276,7 @@ class _Asked:
     """
 
     part: Part
+    whole: Part
     halves: list[float]
     repeated: int
     impacts: Impacts | None

@@ -46,6 +46,11 @@ class Searches:
         sides = [(t - max(d, ULPS * t), t, t + max(d, ULPS * t)) for t, d in times]
         self.times: Numbers = np.clip(np.array(sides).reshape(-1), 0.0, end)
 
+    @property
+    def names(self) -> list[str]:
+        """The quantities that were searched for."""
+        return [*(one.quantity for one in self.all_occurrences), *(one.quantity for one in self.extremes)]
+
     def check(self, ledger: Ledger, asked: Columns, times: Numbers, columns: Columns) -> None:
         """Compare what was found with the motion.
 

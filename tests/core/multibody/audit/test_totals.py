@@ -1,0 +1,63 @@
+"""Wrong energies and momenta in time are refused, and wrong searches for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.multibody.trajectory.occurrences import ExtremesOf
+from tests.core.multibody.audit.spoiled import Audited, answered, description_of
+
+SCENES = ("physical-pendulum", "double-pendulum", "kepler-ellipse", "dumbbell", "asymmetric-top", "spherical-pendulum")
+TIMES = np.linspace(0.0, 1.0, 5)
+
+
+@cache
+def right(name: str) -> Audited:
+    outputs = ("trajectory", "energy-in-time", "momenta-in-time")
+    return answered(description_of(name), TIMES, outputs)
+
+
+@cache
+def searched(name: str, quantity: str) -> Audited:
+    return answered(description_of(name), TIMES, ("trajectory", ExtremesOf(quantity)))
+
+
+CHANGES: dict[str, Callable[[Any], Any]] = {
+    "is too large by a millionth": lambda x: x * (1.0 + 1e-6),
+    "has the wrong sign": lambda x: -x,
+    "is off at one time": lambda x: x + 1e-6 * np.eye(len(x))[-1].reshape(-1, *(1,) * (x.ndim - 1)),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("name", ["energy.kinetic", "energy.potential", "momentum", "angular_momentum"])
+def test_a_total_that_is_not_that_of_places_and_rates_is_refused(name: str, change: str) -> None:
+    count = 0
+    for scene in SCENES:
+        one = right(scene)
+        motion = one.answer.trajectory
+        assert motion is not None
+        assert one.failure() is None, scene
+        wrong = CHANGES[change](motion.columns[name].values)
+        if np.abs(wrong - motion.columns[name].values).max() < 1e-8:
+            continue
+        columns = {**motion.columns, name: replace(motion.columns[name], values=wrong)}
+        count += 1
+        assert replace(one, answer=replace(one.answer, trajectory=replace(motion, columns=columns))).failure(), scene
+    assert count >= 3
+
+
+@pytest.mark.parametrize("quantity", ["energy.kinetic", "energy.potential", "momentum.x"])
+def test_a_wrong_extreme_of_a_total_is_refused(quantity: str) -> None:
+    for scene in ("double-pendulum", "kepler-ellipse"):
+        one = searched(scene, quantity)
+        assert one.failure() is None, scene
+        for field in ("least", "largest"):
+            extremes = tuple(replace(x, **{field: getattr(x, field) + 1e-5}) for x in one.answer.extremes or ())
+            assert replace(one, answer=replace(one.answer, extremes=extremes)).failure() is not None, scene
