@@ -299,7 +299,7 @@ TESTED_IN |= {
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
             "phases/phase phases/phases "
-            "phases/slow_bounces phases/tracks phases/uniform_pieces phases/watches start "
+            "phases/slow_bounces phases/tracks phases/watches start "
             "table/contact_places"
         ),
         "table/test_contact_geometry_in_space": ("contacts/slip_directions phases/turning_pieces phases/turning_slip"),

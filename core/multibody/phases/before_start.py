@@ -7,6 +7,8 @@ an impact and friction are not reversible.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from core.arrays import Floats
@@ -15,6 +17,7 @@ from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.contacts.contact_states import State, change_of
 from core.multibody.phases.phase import Phase, PhaseMotion
+from core.multibody.phases.phase_ends import expansions_of
 from core.multibody.phases.watches import Watch, lengths, watches
 from core.multibody.trajectory.events import End, first_event
 
@@ -45,7 +48,7 @@ def follow_backwards(motion: PhaseMotion, times: Floats) -> None:
         watched = [*watches(phase.unilateral, phase.states, phase.tables[0]), *lengths(motion.base.measures.limits)]
         with precision(BITS):
             ends = [_end(phase, watch) for watch in watched]
-            event = first_event(phase.models[0].whole, ends, float(np.min(times)))
+            event = first_event(phase.models[0].whole, ends, float(np.min(times)), partial(expansions_of, phase))
         names = [event.name] if event is not None and event.time >= 0.0 else []
     if names:
         raise InvalidParameter(

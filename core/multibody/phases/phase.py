@@ -80,8 +80,11 @@ class Phase:
     @cached_property
     def exact_motions(self) -> list[Expansion]:
         """The motion on every track from the start of the phase, where accelerations are constant."""
-        tracks = zip(self.tables, self.models, strict=True)
-        return [uniform_motion(table.table, model.whole.acceleration) for table, model in tracks]
+        found = [self.start_forces[0]]
+        for model in self.models[1:]:
+            found.append(multipliers_at_start(model.described.measures, model.whole.acceleration))
+        tracks = zip(self.tables, self.models, found, strict=True)
+        return [uniform_motion(table.table, model.whole.acceleration, forces) for table, model, forces in tracks]
 
     @cached_property
     def start_forces(self) -> tuple[Multipliers, list[ForceAtStart]]:
@@ -99,6 +102,11 @@ class Phase:
             force.value is not None and (row is None or not multipliers.elimination.reduced({row: ONE}, ZERO)[0])
             for force, row in zip(forces, pushes, strict=True)
         ]
+
+    def pulls(self, force: int) -> bool:
+        """Return whether a force is certainly positive at the start."""
+        value = self.start_forces[1][force].value
+        return value is not None and bool(value > 0)
 
     @property
     def turning(self) -> bool:

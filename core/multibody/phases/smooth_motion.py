@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,9 @@ from core.multibody.algebra.polynomials import ZERO
 from core.multibody.contacts.contact_states import PhaseTable
 from core.multibody.motion.modelling import Modelled
 from core.multibody.phases.phase import Phase, PhaseMotion
+from core.multibody.phases.phase_ends import expansions_of
 from core.multibody.phases.tracks import Track
+from core.multibody.phases.uniform_pieces import steady_forces
 from core.multibody.start import lost_at_start
 from core.multibody.table.connection_effects import Limit
 from core.multibody.trajectory.events import End, end_of, first_event
@@ -36,10 +39,11 @@ def smooth_motion(found: Modelled, times: Floats) -> PhaseMotion:
         motion.events = list(lost_at_start(found, phase.start_forces[1]))
         motion.ended = next(iter(motion.events), None)
         return motion
+    expansions = partial(expansions_of, phase)
     with np.errstate(over="ignore", invalid="ignore"):
         first, last = float(np.min(times, initial=0.0)), float(np.max(times, initial=0.0))
-        motion.before = first_event(found.whole, watched, first) if first < 0.0 else None
-        ended = first_event(found.whole, watched, last) if last > 0.0 else None
+        motion.before = first_event(found.whole, watched, first, expansions) if first < 0.0 else None
+        ended = first_event(found.whole, watched, last, expansions) if last > 0.0 else None
     motion.events = [event for event in (motion.before, ended) if event is not None]
     motion.ended = next((event for event in motion.events if event.time >= 0.0), None)
     return motion
@@ -52,7 +56,7 @@ def ends_within(phase: Phase, time: float) -> bool:
         return False
     try:
         with np.errstate(over="ignore", invalid="ignore"):
-            return first_event(phase.models[0].whole, watched, time) is not None
+            return first_event(phase.models[0].whole, watched, time, partial(expansions_of, phase)) is not None
     except MechanicsError:
         return True
 
@@ -65,7 +69,15 @@ def not_watched(phase: Phase) -> list[str]:
 
 def _watched(phase: Phase) -> Sequence[End]:
     whole = phase.models[0].whole
-    return [end_of(whole, limit) for limit in whole.measures.limits if _is_watched(phase, limit)]
+    limits = [limit for limit in whole.measures.limits if _is_watched(phase, limit)]
+    pulling = [limit.force for limit in limits if limit.force is not None and phase.pulls(limit.force)]
+    if whole.uniform and pulling:
+        # What pulls at the start and does not change pulls for ever.
+        own = [whole.measures.forces[force] for force in pulling]
+        steady = steady_forces(phase.tables[0].table, phase.exact_motions[0], own)
+        kept = {force for force, keeps in zip(pulling, steady, strict=True) if keeps}
+        limits = [limit for limit in limits if limit.force not in kept]
+    return [end_of(whole, limit) for limit in limits]
 
 
 def _is_watched(phase: Phase, limit: Limit) -> bool:

@@ -7,7 +7,7 @@ a gap, however small, are known to all their digits.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,28 +15,80 @@ from flint import arb
 
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, is_zero
-from core.multibody.equations.expansion import Expansion, Series, expansion, product, slope
+from core.multibody.equations.dynamics import Multipliers
+from core.multibody.equations.expansion import Expansion, Series, product, slope
 from core.multibody.equations.packed import pair, two_to
 from core.multibody.search.curves import Curve
 from core.multibody.search.pieces import COEFFICIENTS, Pieces
-from core.multibody.table.table import Table
+from core.multibody.table.connection_effects import Force
+from core.multibody.table.table import Row, Table
 
 
-def uniform_motion(table: Table, accelerations: Sequence[Ball]) -> Expansion:
+def uniform_motion(table: Table, accelerations: Sequence[Ball], multipliers: Multipliers) -> Expansion:
     """Return a motion with constant accelerations, and the forces at its start, as an exact expansion."""
     places = [[q, v, a / 2, ZERO, ZERO] for q, v, a in zip(table.q, table.v, accelerations, strict=True)]
-    # What is free has no multipliers to be found.
-    multipliers = expansion(table, 2).multipliers if table.rows else []
-    return Expansion(places, [[x[0], ZERO, ZERO] for x in multipliers])
+    start = multipliers.elimination.solution(range(len(table.rows)))
+    return Expansion(places, [[x, ZERO, ZERO] for x in start])
 
 
 def keeps_its_forces(table: Table, motion: Expansion) -> bool:
-    """Return whether the forces at the start of a motion with constant accelerations move it at all times.
+    """Return whether the multipliers at the start of a motion with constant accelerations move it at all times.
 
     They may change all the same: where their arms do, or a formula of what moves acts on what rests. The equations of
     motion with the multipliers of the start are polynomials in time, and hold at all times where every coefficient
     vanishes.
     """
+    return _moved_by(table, motion, [_push(row, motion) for row in table.rows])
+
+
+def steady_forces(table: Table, motion: Expansion, forces: Sequence[Force]) -> list[bool]:
+    """Return which forces keep the value of the start for all the time of a motion with constant accelerations.
+
+    The row of a string that is drawn in straight pushes along one direction, as strongly as its length says: its
+    multiplier changes by as much the other way, and what it does stays the same.
+    """
+    pushes = [_push(row, motion) for row in table.rows]
+    steady = [
+        {j: [series[0], *[ZERO] * motion.order] for j, series in push.items()} if _keeps_its_direction(push) else push
+        for push in pushes
+    ]
+    if not _moved_by(table, motion, steady):
+        return [False] * len(forces)
+    return [
+        not (force.of_state or force.of_rates or force.of_squares or force.of_laws)
+        and all(_are_alike(motion.of(poly), _strongest(pushes[row])) for row, poly in force.terms)
+        for force in forces
+    ]
+
+
+def _push(row: Row, motion: Expansion) -> dict[int, Series]:
+    """Return what a multiplier one does to every coordinate, along a motion."""
+    found: dict[int, Series] = {}
+    for line in (row.rates, row.drag):
+        for j, poly in line.items():
+            more = motion.of(poly)
+            found[j] = [x + y for x, y in zip(found[j], more, strict=True)] if j in found else more
+    return found
+
+
+def _keeps_its_direction(push: Mapping[int, Series]) -> bool:
+    return all(_are_alike(series, _strongest(push)) for series in push.values())
+
+
+def _strongest(push: Mapping[int, Series]) -> Series:
+    """Return the largest component of a push at the start."""
+    return max(push.values(), key=lambda series: abs(float(series[0])), default=[ZERO])
+
+
+def _are_alike(first: Series, second: Series) -> bool:
+    """Return whether a polynomial in time is a multiple of another, which is not zero at the start."""
+    return not is_zero(second[0]) and all(
+        is_zero(x * second[0] - y * first[0]) for x, y in zip(first[1:], second[1:], strict=True)
+    )
+
+
+def _moved_by(table: Table, motion: Expansion, pushes: Sequence[Mapping[int, Series]]) -> bool:
+    """Return whether the multipliers of the start satisfy the equations of motion at all times, with these pushes."""
     order, rates = motion.order, [slope(series) for series in motion.places]
     read = [(one, key[0]) for law in table.acting for one in law.inputs.values() for key in one.form if key]
     if any(not is_zero(x) for one, i in read for x in (rates if one.rate else motion.places)[i][1:]):
@@ -52,10 +104,9 @@ def keeps_its_forces(table: Table, motion: Expansion) -> bool:
         add(i, damping, rates[j])
     for (i, j, k), gyration in table.gyration.items():
         add(i, -gyration, product(motion.places[j][:order], rates[k]))
-    for row, multiplier in zip(table.rows, motion.multipliers, strict=True):
-        for line in (row.rates, row.drag):
-            for j, poly in line.items():
-                add(j, -multiplier[0], motion.of(poly))
+    for push, multiplier in zip(pushes, motion.multipliers, strict=True):
+        for j, series in push.items():
+            add(j, -multiplier[0], series)
     return all(is_zero(x) for series in left for x in series[1:])
 
 

@@ -24,9 +24,10 @@ from core.multibody.motion.modelling import Modelled, Piece, modelled
 from core.multibody.motion.motion import BallState, Motion
 from core.multibody.motion.pendulum import plane_pendulum
 from core.multibody.proven.proven_series import ProvenSeries, Vector
+from core.multibody.search.first_of_motion import Expansions
 from core.multibody.start import noticed_of, scene_model, slack_strings
 from core.multibody.table.frames import Frame
-from core.multibody.trajectory.events import End, end_of, first_event
+from core.multibody.trajectory.events import End, end_of, first_event, runs_of
 from core.notices import Notice
 from core.systems.trajectory import MotionEvent
 
@@ -112,13 +113,16 @@ class PartProof:
         rows, events = list(range(len(times))), []
         with precision(BITS):
             for end in {max(float(max(times)), 0.0), min(float(min(times)), 0.0)} - {0.0}:
-                event = first_event(self.found.whole, self.watched, end)
+                event = first_event(self.found.whole, self.watched, end, self._expansions)
                 if event is not None:
                     events.append(event)
                     # Within the error of its time nothing is said to be before it.
                     bound = Fraction(event.time) - Fraction(event.error) * (1 if end > 0.0 else -1)
                     rows = [k for k in rows if (times[k] <= bound if end > 0.0 else times[k] >= bound)]
         return rows, events
+
+    def _expansions(self) -> Expansions:
+        return Expansions.of(runs_of(self.found.whole, self.found.whole))
 
     def columns(self, times: Sequence[Ball]) -> dict[str, ProvenColumn]:
         """Return what the bodies do, at times before what ends the motion."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import copysign
@@ -53,8 +53,15 @@ def end_of(whole: Whole, limit: Limit) -> End:
     )
 
 
-def first_event(whole: Whole, ends: Sequence[End], end: float) -> MotionEvent | None:
+def first_event(
+    whole: Whole, ends: Sequence[End], end: float, expansions_of: Callable[[], Expansions]
+) -> MotionEvent | None:
     """Return the first event between the start and `end`, which may be negative; None if there is none.
+
+    Parameters
+    ----------
+    expansions_of : callable
+        Returns the computations of the motion, once they are needed.
 
     Raises
     ------
@@ -67,7 +74,7 @@ def first_event(whole: Whole, ends: Sequence[End], end: float) -> MotionEvent | 
     if not watched or end == 0.0:
         return ended
     _require_weight(whole, watched)
-    expansions = Expansions.of(runs_of(whole, whole))
+    expansions = expansions_of()
     best: MotionEvent | None = None
     for group, reach in _groups(whole, watched, end):
         quantities = [one.watched for one in group]
