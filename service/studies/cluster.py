@@ -4,13 +4,25 @@ from __future__ import annotations
 
 import logging
 import os
+import socket
+import ssl
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from service.settings import Settings
 
 CONNECTING = 1.5
-"""Seconds in which an existing scheduler must answer; what hinders studies is in their states within two."""
+"""Seconds in which an existing scheduler must have accepted a client."""
+
+ANSWERING = 0.5
+"""Seconds in which it must send its first byte: what hinders studies is in their states within two seconds."""
+
+TRIED_AGAIN = "the Dask cluster cannot be used, and is tried again"
+"""What the state of a study says while its scheduler does not answer."""
+
+PORT = 8786
+"""Of a scheduler by default, as Dask has it."""
 
 WATCHED_EVERY = {"distributed.admin.tick.interval": "1s", "distributed.worker.memory.monitor-interval": "500ms"}
 """How often processes look at themselves; by Dask's own settings (20 ms, 100 ms) idle ones take 6 % of a core."""
@@ -40,11 +52,13 @@ class Cluster:
         Raises
         ------
         OSError
-            If the existing scheduler does not answer.
+            If the existing scheduler does not answer, or the connection has broken.
         """
         import dask
 
         if self.client is not None:
+            if not self.connected:
+                raise ConnectionAbortedError
             return self.client
         # Its own log would repeat, for each process, what is said here once.
         dask.config.set({"logging.distributed": "critical", **WATCHED_EVERY})
@@ -52,6 +66,8 @@ class Cluster:
 
         settings = self._settings
         if settings.dask:
+            # Without this, the client would wait without limit for a peer that accepts connections and sends nothing.
+            require_scheduler(settings.dask)
             self.client = Client(settings.dask, timeout=CONNECTING, name="polhode")
             return self.client
         from distributed.security import Security
@@ -97,3 +113,26 @@ class Cluster:
             if part is not None:
                 part.close(timeout=5)
         self.client = self._local = None
+
+
+def require_scheduler(address: str) -> None:
+    """Connect to a scheduler and wait for its first byte, which comes before it knows who has connected.
+
+    Raises
+    ------
+    OSError
+        If there is none.
+    """
+    place = urlsplit(address if "://" in address else f"//{address}")
+    if place.scheme not in ("", "tcp", "tls"):
+        # Other transports have no first byte.
+        return
+    with socket.create_connection((place.hostname or "", place.port or PORT), ANSWERING) as connection:
+        connection.settimeout(ANSWERING)
+        if place.scheme == "tls":
+            # Whose certificate it is, the client checks that connects after this.
+            context = ssl.create_default_context()
+            context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+            context.wrap_socket(connection).close()
+        elif not connection.recv(1):
+            raise ConnectionAbortedError

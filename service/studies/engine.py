@@ -22,7 +22,7 @@ from service.execution.worker import Terms
 from service.observability.logs import LOG
 from service.problems import Refusal
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
-from service.studies.cluster import Cluster
+from service.studies.cluster import TRIED_AGAIN, Cluster
 from service.studies.one_answer import compute_answer
 from service.studies.store import Store, reason_of
 from service.studies.study import FAILED
@@ -81,7 +81,7 @@ class Engine:
         try:
             self._hand_over()
         except OSError as fault:
-            self._say("the Dask cluster cannot be reached, and is tried again", fault)
+            self._say(TRIED_AGAIN, fault)
             self._cluster.close()
             time.sleep(PAUSE)
             return True
@@ -118,7 +118,6 @@ class Engine:
                 # Of one answer, the trial would be all of the work.
                 tried = bool(stored) or study.whole
                 self._unfinished[identity] = UnfinishedStudy(study, missing, each, request, tried=tried)
-                self._store.begin(identity)
                 LOG.info("a study is worked on", extra={"study": identity, "members": study.count, "done": study.done})
 
     def _let_go(self, unfinished: UnfinishedStudy) -> None:
@@ -144,6 +143,10 @@ class Engine:
 
     def _hand_over(self) -> None:
         client = self._cluster.open()
+        for identity, unfinished in self._unfinished.items():
+            if not unfinished.begun:
+                unfinished.begun = True
+                self._store.begin(identity)
         if time.monotonic() - self._counted > 1.0:
             self._processes = max(1, sum(client.nthreads().values()))
             self._counted = time.monotonic()

@@ -218,9 +218,9 @@ class Store:
             connection.execute("COMMIT")
 
     def begin(self, identity: str) -> None:
-        """Record that a study is being worked on."""
+        """Record that a study is being worked on; what hindered it no longer does."""
         self._write(
-            "UPDATE studies SET status = ?, started = COALESCE(started, ?) WHERE id = ? AND status = ?",
+            "UPDATE studies SET message = '', status = ?, started = COALESCE(started, ?) WHERE id = ? AND status = ?",
             (RUNNING, time.time(), identity, ACCEPTED),
         )
 
@@ -325,4 +325,5 @@ def reason_of(fault: Exception) -> str:
     if isinstance(fault, sqlite3.Error):
         return str(fault)
     number = getattr(fault, "errno", None)
-    return "it cannot be reached" if number is None else os.strerror(number)
+    # Those of the resolution of names are negative.
+    return os.strerror(number) if number is not None and number > 0 else "it cannot be reached"

@@ -14,8 +14,10 @@ from service.observability.metrics import Metrics
 from service.problems import Refusal
 from service.settings import Settings
 from service.studies.chunk_files import ChunkFiles
+from service.studies.cluster import TRIED_AGAIN, require_scheduler
 from service.studies.folder import Ownership, data_folder
-from service.studies.store import Store
+from service.studies.store import Store, reason_of
+from service.studies.study import ACCEPTED, Study
 
 LOOK_EVERY = 1.0
 """Seconds."""
@@ -92,6 +94,20 @@ class Supervisor:
         self._metrics.members_missing.set(sum(study.count - study.done for study in unfinished))
         if unfinished:
             self.ensure()
+        accepted = [study for study in unfinished if study.status == ACCEPTED]
+        if accepted and self._settings.dask:
+            self._require_scheduler(accepted)
+
+    def _require_scheduler(self, accepted: list[Study]) -> None:
+        """Say of studies that nothing works on yet if their scheduler cannot be reached.
+
+        The process that works on them may take long to start on a busy machine.
+        """
+        try:
+            require_scheduler(self._settings.dask)
+        except (OSError, ValueError) as fault:
+            for study in accepted:
+                self.store.note(study.id, f"{TRIED_AGAIN}: {reason_of(fault)}")
 
     def clean(self) -> None:
         """Remove what was finished too long ago."""

@@ -41,6 +41,8 @@ class UnfinishedStudy:
         Stretches that are to be tried alone.
     deaths : mapping
         How many processes a stretch has ended while it was alone.
+    begun : bool
+        Whether it is recorded as running, which it is once there is a cluster.
     tried : bool
         Whether a sample of the members has been handed over, which is done first.
     ended : int
@@ -60,6 +62,7 @@ class UnfinishedStudy:
     in_flight: dict[Any, tuple[Stretch, float]] = field(default_factory=dict)
     suspects: deque[Stretch] = field(default_factory=deque)
     deaths: dict[Stretch, int] = field(default_factory=dict)
+    begun: bool = False
     tried: bool = False
     ended: int = 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 import time
 from collections.abc import Callable, Iterator
 from multiprocessing import forkserver
@@ -78,6 +79,13 @@ def processes() -> Iterator[str]:
         forkserver.ensure_running()
         with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
             yield cluster.scheduler_address
+
+
+@pytest.fixture
+def silent() -> Iterator[str]:
+    """Yield the address of a peer that accepts connections and sends nothing."""
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        yield f"tcp://127.0.0.1:{listening.getsockname()[1]}"
 
 
 class Desk:

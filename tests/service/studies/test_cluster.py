@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import socket
 import ssl
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from distributed import Client
 from distributed.security import Security
 
 from service.settings import Settings
-from service.studies.cluster import Cluster
+from service.studies.cluster import Cluster, require_scheduler
 
 PATIENCE = "5s"
 """A refusal comes at once; one that does not come is a failure of the test."""
@@ -54,6 +55,8 @@ def test_nobody_without_its_certificate_is_admitted(cluster: Cluster) -> None:
     # A certificate of the same kind that another authority has signed.
     with pytest.raises(OSError, match=r"(Timed out|SSL|TLS|reset|closed)"):
         Client(scheduler, security=Security.temporary(), timeout=PATIENCE)
+    # Clients that did not connect complain when they are collected, which is not to happen in another test.
+    gc.collect()
 
 
 def closed_to_strangers(address: str) -> bool:
@@ -72,3 +75,20 @@ def closed_to_strangers(address: str) -> bool:
 
 def test_each_process_demands_a_certificate(cluster: Cluster) -> None:
     assert [closed_to_strangers(address) for address in addresses(cluster)] == [True, True, True]
+
+
+def test_a_scheduler_is_known_by_its_first_bytes(cluster: Cluster, processes: str, silent: str) -> None:
+    require_scheduler(addresses(cluster)[0])
+    require_scheduler(processes)
+    require_scheduler(processes.removeprefix("tcp://"))
+    with pytest.raises(TimeoutError):
+        require_scheduler(silent)
+    with pytest.raises(TimeoutError):
+        require_scheduler(silent.replace("tcp:", "tls:"))
+
+
+def test_no_scheduler_is_known_at_once() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as closed:
+        port = closed.getsockname()[1]
+    with pytest.raises(ConnectionRefusedError):
+        require_scheduler(f"tcp://127.0.0.1:{port}")

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.studies.study import DISMISSED, FAILED, SUCCESSFUL
+from service.studies.cluster import TRIED_AGAIN
+from service.studies.study import ACCEPTED, DISMISSED, FAILED, SUCCESSFUL
 from service.studies.task import compute
 from tests.service.studies.conftest import TERMS, UNIFORM, Desk, sleeping
 from tests.service.toy_routes import GOOD
@@ -164,14 +165,30 @@ def test_the_place_of_results_is_not_told(
     assert any(secret in getattr(record, "reason", "") for record in caplog.records)
 
 
-def test_a_scheduler_that_cannot_be_reached_is_said(desk_on: Desks, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_cannot_be_reached_is_said(
+    desk_on: Desks, silent: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("service.studies.engine.PAUSE", 0.01)
-    monkeypatch.setattr("service.studies.cluster.CONNECTING", 0.2)
-    desk = desk_on("tcp://127.0.0.1:9")
+    monkeypatch.setattr("service.studies.cluster.ANSWERING", 0.1)
+    desk = desk_on(silent)
     identity = desk.submit(UNIFORM)
     assert desk.engine.turn()
-    assert "cannot be reached" in desk.study(identity).message
-    assert "127.0.0.1" not in desk.study(identity).message
+    study = desk.study(identity)
+    assert (study.status, study.message) == (ACCEPTED, f"{TRIED_AGAIN}: it cannot be reached")
+
+
+def test_a_scheduler_that_has_gone_is_said(desk_on: Desks, in_process: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.studies.engine.PAUSE", 0.01)
+    desk = desk_on(in_process)
+    identity = desk.submit(UNIFORM, 0.1)
+    desk.work(until=lambda: desk.study(identity).done)
+    # As the client has it from the end of its connection on.
+    desk.cluster.client.status = "connecting"
+    assert desk.engine.turn()
+    assert TRIED_AGAIN in desk.study(identity).message
+    assert desk.cluster.client is None
+    desk.work()
+    assert desk.study(identity).status == SUCCESSFUL
 
 
 def test_a_dismissed_study_lets_its_processes_go(desk_on: Desks, processes: str) -> None:

@@ -25,6 +25,7 @@ from service.observability.metrics import Metrics
 from service.problems import Refusal
 from service.settings import Settings
 from service.studies import resources
+from service.studies.cluster import TRIED_AGAIN
 from service.studies.database import DATABASE
 from service.studies.folder import Ownership
 from service.studies.store import Store, identity_of
@@ -680,3 +681,16 @@ def test_one_process_at_a_time_owns_a_folder(tmp_path: Path) -> None:
     assert not second.acquire()
     first.release()
     assert second.acquire()
+
+
+async def test_that_a_scheduler_cannot_be_reached_is_said_before_anything_works_on_it(
+    tmp_path: Path, silent: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.studies.cluster.ANSWERING", 0.1)
+    async with client_at(tmp_path) as client:
+        place = await submitted(client)
+        watch = asyncio.create_task(Supervisor(Settings(data=str(tmp_path), dask=silent), TABLE, Metrics()).watch())
+        while not (state := (await client.get(place)).json())["message"]:
+            await asyncio.sleep(0.02)
+        watch.cancel()
+        assert (state["status"], state["message"]) == ("accepted", f"{TRIED_AGAIN}: it cannot be reached")
