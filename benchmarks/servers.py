@@ -27,11 +27,12 @@ class Server:
 
     def compute_processes(self) -> list[int]:
         """Return the processes that its fork server has started."""
-        found: list[int] = []
-        for child in children(self.pid):
-            if b"forkserver" in Path(f"/proc/{child}/cmdline").read_bytes():
-                found += children(child)
-        return found
+        return [process for server in self.fork_servers() for process in children(server)]
+
+    def fork_servers(self) -> list[int]:
+        """Return the processes from which compute processes are forked."""
+        found = children(self.pid)
+        return [child for child in found if b"forkserver" in Path(f"/proc/{child}/cmdline").read_bytes()]
 
 
 def children(process: int) -> list[int]:
