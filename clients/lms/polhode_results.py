@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 import subprocess
 import sys
 import urllib.request
@@ -38,6 +39,21 @@ def results(folder: Path, question: str, submissions: list[Any]) -> list[dict[st
     done = subprocess.run(command, input=request, capture_output=True, text=True, check=True, timeout=60)
     found = json.loads(done.stdout)["results"]
     return found
+
+
+def handed_in(file: Path) -> Any:
+    """Return the document in a file that a student has handed in.
+
+    Raises
+    ------
+    OSError, ValueError, RecursionError
+        If there is none: a link could lead to what students may not see, a pipe would be waited for.
+    """
+    opened = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    with open(opened, encoding="utf-8") as text:
+        if not stat.S_ISREG(os.fstat(opened).st_mode):
+            raise OSError(f"{file.name} is not a file")
+        return json.load(text)
 
 
 def claim(entry: Any, unit: str | None = None) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -103,7 +104,8 @@ def test_files_that_are_handed_in_are_graded(tmp_path: Path, bundle: Path) -> No
     course = Course(tmp_path, bundle)
     report = course.report(asked, {}, {"w.json": claim})
     assert report["score"] == 0.25
-    (tmp_path / "student" / "w.json").unlink()
+    (tmp_path / "student" / "w.json").rename(tmp_path / "elsewhere.json")
+    (tmp_path / "student" / "w.json").symlink_to(tmp_path / "elsewhere.json")
     assert not course.report(asked, {}, {})["gradable"]
 
 
@@ -188,19 +190,44 @@ def test_the_element_grades_with_a_service_too(
     assert data["partial_scores"]["T"]["score"] == 0.5
 
 
-def autograded(tmp_path: Path, bundle: Path, answers: str | None) -> Any:
+def autograded(
+    tmp_path: Path, bundle: Path, answers: str | None, hand_in: Callable[[Path], object] | None = None
+) -> Any:
     source = deployed(
         tmp_path / "source", bundle, "gradescope/grade.py", "gradescope/run_autograder", "gradescope/setup.sh"
     )
     (source / "points.json").write_text('{"1f": 2.0, "problem-1": 3.0}')
     for name in ("submission", "results"):
-        (tmp_path / name).mkdir()
+        (tmp_path / name).mkdir(exist_ok=True)
     if answers is not None:
         (tmp_path / "submission" / "answers.json").write_text(answers)
     environment = without_service() | {"AUTOGRADER": str(tmp_path)}
     environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
     subprocess.run([str(source / "run_autograder")], check=True, timeout=100, env=environment)
     return valid("gradescope", json.loads((tmp_path / "results" / "results.json").read_text()))
+
+
+def linked(submission: Path) -> None:
+    """Hand in a link to right answers: what it leads to could be anything that the grader may read."""
+    (submission.parent / "right").write_text('{"1f": {"/period": "6.2806 s"}}')
+    (submission / "answers.json").symlink_to(submission.parent / "right")
+
+
+def shadowed(submission: Path) -> None:
+    """Hand in modules with the names of those that the grader imports."""
+    for name in ("json", "polhode_results", "numpy"):
+        (submission / f"{name}.py").write_text("raise SystemExit(1)")
+    (submission / "answers.json").write_text("{}")
+
+
+@pytest.mark.parametrize("hand_in", [linked, shadowed, lambda folder: os.mkfifo(folder / "answers.json")])
+def test_only_a_file_is_read_of_what_is_handed_in(
+    tmp_path: Path, bundle: Path, hand_in: Callable[[Path], object]
+) -> None:
+    (tmp_path / "submission").mkdir()
+    hand_in(tmp_path / "submission")
+    report = autograded(tmp_path, bundle, None)
+    assert [test["score"] for test in report["tests"]] == [0.0, 0.0]
 
 
 def test_the_autograder_of_gradescope(tmp_path: Path, bundle: Path) -> None:
@@ -215,7 +242,14 @@ def test_the_autograder_of_gradescope(tmp_path: Path, bundle: Path) -> None:
 
 @pytest.mark.parametrize(
     "answers",
-    [None, "{", "[]", '{"1f": {}}', '{"1f": 3}', '{"1f": {"/period": "?"}}', '{"1f": ' + "[" * 10_000],
+    [
+        None,
+        '{"1f": 3}',
+        # What is no claim: a tolerance, a score, and numbers that nothing can be compared with.
+        '{"1f": {"/period": {"value": 6.28, "unit": "s", "tolerance": 9}}, "problem-1": {"/tension": {"value": NaN}}}',
+        '{"1f": {"/period": {"value": 1, "reference": 1, "score": 1}}, "problem-1": {"": 1e400}}',
+        '{"1f": ' + "[" * 10_000,
+    ],
     ids=lambda answers: str(answers)[:30],
 )
 def test_nothing_that_is_handed_in_stops_the_autograder(tmp_path: Path, bundle: Path, answers: str | None) -> None:

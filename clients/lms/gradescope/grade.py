@@ -13,7 +13,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from polhode_results import claim, feedback, results
+from polhode_results import claim, feedback, handed_in, results
 
 HERE = Path(__file__).parent
 
@@ -38,7 +38,7 @@ def main() -> None:
     root = Path(os.environ.get("AUTOGRADER", "/autograder"))
     points = json.loads((HERE / "points.json").read_text(encoding="utf-8"))
     try:
-        answers = json.loads((root / "submission" / "answers.json").read_text(encoding="utf-8"))
+        answers = handed_in(root / "submission" / "answers.json")
         said = ""
     except (OSError, ValueError, RecursionError) as fault:
         answers, said = {}, f"answers.json cannot be read: {fault}"

@@ -20,7 +20,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from polhode_results import claim, feedback, results
+from polhode_results import claim, feedback, handed_in, results
 
 
 def submission(grade: Path, answers: dict[str, Any]) -> dict[str, Any]:
@@ -29,9 +29,8 @@ def submission(grade: Path, answers: dict[str, Any]) -> dict[str, Any]:
     claims = {}
     for name, answer in answers.items():
         if "file" in answer:
-            file = grade / "student" / answer["file"]
             try:
-                claims[answer["pointer"]] = json.loads(file.read_text(encoding="utf-8"))
+                claims[answer["pointer"]] = handed_in(grade / "student" / answer["file"])
             except (OSError, ValueError, RecursionError):
                 claims[answer["pointer"]] = {"formula": ""}
             continue
