@@ -18,6 +18,7 @@ from core.multibody.assembly.nearest_that_fits import with_nearest
 from core.multibody.audit.audit import audited
 from core.multibody.audit.failure import require
 from core.multibody.audit.nearest import audited_assembly
+from core.multibody.audit.rest import audited_range
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.parts.joined_answer import answered_by_parts
@@ -136,6 +137,9 @@ def solve_scene(
             for i, output in enumerate(outputs)
             if isinstance(output, RestOf)
         ]
+        if scene.assemble is None and budget.audited:
+            for found_range in ranges:
+                require(audited_range(scene, found_range))
         try:
             answer = answered_by_parts(found.scene, request, _checked)
         except PlacesDisagree as fault:

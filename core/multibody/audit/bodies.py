@@ -58,6 +58,8 @@ class Reader:
     Parameters
     ----------
     scene : Scene
+    instead : mapping of path to float
+        Numbers in place of those that are written.
 
     Attributes
     ----------
@@ -66,9 +68,10 @@ class Reader:
     bodies : mapping of str to RigidBody
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-        self.numerals = Numerals.of(scene.let, scene.numbers)
+    def __init__(self, scene: Scene, instead: Mapping[Path, float] | None = None) -> None:
+        self.scene, exact = scene, Numerals.of({}, "doubles")
+        others = {path: exact.number(value, path) for path, value in (instead or {}).items()}
+        self.numerals = Numerals.of(scene.let, scene.numbers, instead=others)
         self.dimension = _dimension(scene)
         self.gravity = self.vector((0,) * self.dimension if scene.gravity is None else scene.gravity, ("gravity",))
         self.bodies = {name: self._body(name) for name in scene.bodies}
@@ -77,7 +80,7 @@ class Reader:
     def number(self, value: object, path: Path) -> float:
         """Return a number as the nearest double."""
         # The double that was sent is the one nearest to its decimal.
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and path not in self.numerals.instead:
             return float(value)
         return float(self.numerals.number(value, path))
 

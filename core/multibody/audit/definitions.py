@@ -6,7 +6,7 @@ nothing with the table of equations that answers are computed by.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,7 +19,7 @@ from core.multibody.audit import (
     law_definitions,
     string_definitions,
 )
-from core.multibody.audit.bodies import Reader, RigidBody
+from core.multibody.audit.bodies import Path, Reader, RigidBody
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.placement import LARGEST, LEAST, Placement, Undefined
@@ -78,12 +78,17 @@ class Description:
         return all(LEAST < x < LARGEST for x in numbers)
 
 
-def description_of(scene: Scene) -> Description:
+def description_of(scene: Scene, instead: Mapping[Path, float] | None = None) -> Description:
     """Return the bodies of a scene and the definitions of its connections.
 
     The scene has been read and found in order before: nothing is checked here.
+
+    Parameters
+    ----------
+    instead : mapping of path to float, optional
+        Numbers in place of those that are written.
     """
-    reader = Reader(scene)
+    reader = Reader(scene, instead)
     found: list[Definition] = []
     undefined: dict[str, str] = {}
     for i, (name, connection) in enumerate(zip(scene.names(), scene.connections, strict=True)):

@@ -59,7 +59,7 @@ def check_equilibria(ledger: Ledger, description: Description, answer: SceneSolu
     if not found or description.undefined or (description.dimension == 3 and rigid):
         return
     samples = _samples(description, found)
-    still = {name: _none(description, name, len(found)) for name in description.bodies}
+    still = {name: none_of(description, name, len(found)) for name in description.bodies}
     freedoms = Freedoms(description)
     _check_places(ledger, description, samples)
     if any(connection.mass for connection in description.connections):
@@ -124,9 +124,12 @@ def _samples(description: Description, found: Sequence[Equilibrium]) -> Samples:
     return Samples(np.zeros(count), placement, motion, {}, errors, {})
 
 
-def _none(description: Description, name: str, count: int) -> Acceleration:
-    turns = description.bodies[name].inertia is not None
-    return Acceleration(np.zeros((count, description.dimension)), np.zeros(count) if turns else None)
+def none_of(description: Description, name: str, count: int) -> Acceleration:
+    """Return the acceleration of a body that has none, at some samples."""
+    still = np.zeros((count, description.dimension))
+    if description.bodies[name].inertia is None:
+        return Acceleration(still, None)
+    return Acceleration(still, np.zeros(count) if description.dimension == 2 else np.zeros((count, 3)))
 
 
 def _check_modes(
@@ -211,7 +214,7 @@ def _linear(
     changes = np.concatenate([still, *(step * s * free for s in STENCIL), 0.0 * free, 0.0 * free])
     rates = np.concatenate([still, *(0.0 * free for _ in STENCIL), free, -free])
     placement, motion = _beside(description, freedoms, sample.placement, changes, rates)
-    gains, many = {name: _none(description, name, len(changes)) for name in description.bodies}, len(changes)
+    gains, many = {name: none_of(description, name, len(changes)) for name in description.bodies}, len(changes)
     held = _holding(description, freedoms, placement, motion)
     idle = {
         name: np.zeros(many)
