@@ -29,6 +29,10 @@ a thousand such steps are a margin for what is left to the place."""
 BEFORE_SINGULAR = 1.0 - SINGULAR_TIME_ERROR
 """Share of the time of a singular place up to which the motion is followed."""
 
+COLLIDED = 2.0**13
+"""Inverse of a distance, in units of the scene, from which on a singular place is a collision: distances fall as the
+power 2/3 of the time that is left, to 1e-8 where steps are the shortest, and are of the order of one elsewhere."""
+
 _SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 
@@ -196,15 +200,16 @@ class Numerical(Motion):
         if not reference.singular:
             self.lost_to_doubles = True
             return None
-        near = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
-        if near:
+        inverse = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
+        nearest = np.abs(evaluate(reference, np.array([reference.end]))[0][0, inverse, 0]).max(initial=0.0)
+        if nearest > COLLIDED:
             # A collision cannot be told from a pass so close that the connections are lost to rounding.
             at = reference.end * two_to(self.units.time)
-            apart = 1.0 / float(np.max(np.abs(evaluate(reference, np.array([reference.end]))[0][0, near, 0])))
+            apart = two_to(-self.units.lengths[inverse[0]]) / float(nearest)
             raise AccuracyUnreachable(
                 None,
                 np.inf,
-                f"bodies that attract or repel come within {apart * two_to(-self.units.lengths[near[0]]):.2g} m of one "
+                f"bodies that attract or repel come within {apart:.2g} m of one "
                 f"another at {at:.10g} s, where even pairs of doubles lose them",
                 path=("times",),
                 remedy="ask for earlier times",

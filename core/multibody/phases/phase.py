@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero
 from core.multibody.contacts.complementarity import Decided
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
@@ -21,7 +21,7 @@ from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import ENDED, TurningSlip, turning_model
 from core.multibody.phases.uniform_pieces import keeps_its_forces, uniform_motion
-from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.connection_effects import Force, Unilateral
 from core.multibody.table.description import Described
 from core.systems.trajectory import MotionEvent
 
@@ -95,18 +95,37 @@ class Phase:
 
     @cached_property
     def determined(self) -> list[bool]:
-        """Which of the forces the scene determines; friction that turns is zero along an axis at the start alone."""
+        """Which of the forces the scene determines; some are zero along an axis at the start alone."""
         multipliers, forces = self.start_forces
-        pushes = [self.models[0].whole.turns_with(force) for force in self.models[0].described.measures.forces]
+        lines = [self._first_line(force) for force in self.models[0].described.measures.forces]
         return [
-            force.value is not None and (row is None or not multipliers.elimination.reduced({row: ONE}, ZERO)[0])
-            for force, row in zip(forces, pushes, strict=True)
+            force.value is not None and not multipliers.elimination.reduced(line, ZERO)[0]
+            for force, line in zip(forces, lines, strict=True)
         ]
 
     def pulls(self, force: int) -> bool:
         """Return whether a force is certainly positive at the start."""
         value = self.start_forces[1][force].value
         return value is not None and bool(value > 0)
+
+    def _first_line(self, force: Force) -> Mapping[int, Ball]:
+        """Return the factors of multipliers in a force just after the start, of the first power of time with any."""
+        whole = self.models[0].whole
+        row = whole.turns_with(force)
+        if row is not None:
+            return {row: ONE}
+        table = whole.measures.table
+        for change in (None, table.v, whole.acceleration):
+            line = {
+                r: evaluated(poly, table.q)
+                if change is None
+                else sum((evaluated(x, table.q) * change[i] for i, x in gradient(poly).items()), ZERO)
+                for r, poly in force.terms
+            }
+            found = {r: x for r, x in line.items() if not is_zero(x)}
+            if found:
+                return found
+        return {}
 
     @property
     def turning(self) -> bool:

@@ -180,8 +180,10 @@ class _Run:
                     rates.append(alike.v)
             tracks.each = [replace(track, v=v) for track, v in zip(tracks.each, rates, strict=True)]
             for i in settling:
-                if self.states[i] is State.OPEN and self.unilateral[i].restitution > 0:
-                    self._event("settle", self.unilateral[i].name)
+                one = self.unilateral[i]
+                # The end of bounces that are not listed is an event already.
+                if self.states[i] is State.OPEN and one.restitution > 0 and one.name != self.motion.phases[-1].settles:
+                    self._event("settle", one.name)
         self._stop(Problem("no-progress", "impacts follow one another without end", ()))
         return False
 

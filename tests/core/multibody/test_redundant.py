@@ -53,3 +53,13 @@ def test_parts_that_are_apart_have_theirs_together() -> None:
         frozenset(("a1", "a2")),
         frozenset(("b1", "b2")),
     }
+
+
+def test_a_force_that_is_zero_at_the_start_alone_is_shared_later() -> None:
+    """A bead passes the lowest place of two equal parabolas: their pushes across the slope are zero only there."""
+    wires = [{"kind": "track", "name": f"w{k}", "place": "b", "on": {"at": [0, 0], "curvature": 1}} for k in (1, 2)]
+    bodies = {"b": {"mass": 1, "at": [0, 0], "velocity": [1, 0]}}
+    scene = read({"gravity": [0, -10], "bodies": bodies, "connections": wires})
+    answer = solve_scene(scene, [0.1, 0.3], ("trajectory", "forces-in-time"))
+    assert answer.trajectory is not None
+    assert not any("w" in name.split(".")[0] for name in answer.trajectory.columns)

@@ -194,3 +194,21 @@ def test_an_event_before_a_singular_place_does_not_depend_on_the_last_time(fast:
         assert [(one.kind, one.time) for one in events] == [
             (one.kind, pytest.approx(one.time, abs=one.error)) for one in whole if one.time < share * whole[-1].time
         ]
+
+
+@pytest.mark.parametrize("floor", [[], [{"kind": "contact", "place": "l", "on": {"at": [0, -50]}}]])
+def test_weights_that_attract_one_another_meet_their_drum(floor: list[Any]) -> None:
+    """What ends the motion is no collision: the weights are metres apart then."""
+    bodies = {
+        "l": {"mass": 1, "at": [-0.2, -2]},
+        "r": {"mass": 4, "at": [0.2, -2]},
+        "d": {"mass": 1, "inertia": 0.02, "radius": 0.2, "at": [0, 0]},
+    }
+    connections = [
+        {"kind": "pin", "a": "d", "b": [0, 0]},
+        {"kind": "string", "name": "s", "through": ["l", "d", "r"], "sides": {"d": ["left", "right"]}},
+        {"kind": "gravitation", "a": "l", "b": "r", "constant": "1/10"},
+        *floor,
+    ]
+    answer = solve_scene(read({"gravity": [0, -10], "bodies": bodies, "connections": connections}), [2.0])
+    assert kinds(answer)[-1][0] == "singular"

@@ -51,7 +51,7 @@ def _of_parts(view: View) -> View:
 
 
 def beside(request: Json, other: str) -> Transformed | None:
-    """Return a request with a pendulum, a bouncing ball or a driven wheel far away."""
+    """Return a request with a pendulum, a bouncing ball, a driven wheel or a body under a force in time far away."""
     size = dimension(request)
     if any(one["kind"] == "spinning-frame" for one in request.get("connections", ())):
         return None
@@ -60,7 +60,9 @@ def beside(request: Json, other: str) -> Transformed | None:
     down = [x for x in components(request["gravity"])]
     if size == 2 and not (is_zero(down[0]) and not is_zero(down[1])):
         return None
-    if size == 3 and (other != "ball" or not (is_zero(down[0]) and is_zero(down[1]) and not is_zero(down[2]))):
+    if size == 3 and (
+        other not in ("ball", "formula") or not (is_zero(down[0]) and is_zero(down[1]) and not is_zero(down[2]))
+    ):
         return None
     found = copy.deepcopy(request)
     names = {i: one.get("name", f"{one['kind']}-{i + 1}") for i, one in enumerate(found.get("connections", ()))}
@@ -76,6 +78,9 @@ def beside(request: Json, other: str) -> Transformed | None:
         body = {"mass": 1, "at": [*place[:-1], 0.3]}
         on = {"at": place} if size == 2 else {"at": place, "normal": [0, 0, 1]}
         connections = [{"kind": "contact", "place": name, "on": on, "restitution": 0.5}]
+    elif other == "formula":
+        body = {"mass": 1, "at": place}
+        connections = [{"kind": "force", "place": name, "force": ["sin(t)", "exp(t) - 1", "t"][:size]}]
     else:
         body = {"mass": 1, "inertia": 0.1, "at": place}
         connections = [{"kind": "pin", "a": name, "b": place}, {"kind": "motor", "a": name, "rate": 2}]

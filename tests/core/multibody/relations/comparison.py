@@ -109,7 +109,7 @@ def _compared(events: list[Event], until: float) -> list[Event]:
     bounces: Counter[str] = Counter()
     first: list[Event] = []
     for event in events:
-        bounces[event.name] = bounces[event.name] + 1 if event.kind == "touch" else 0
+        bounces[event.name] = bounces[event.name] + 1 if event.kind in ("touch", "taut") else 0
         if bounces[event.name] <= COMPARED_BOUNCES:
             first.append(event)
     return [

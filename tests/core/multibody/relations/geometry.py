@@ -87,22 +87,25 @@ def moved(request: Json, by: Sequence[str]) -> Transformed | None:
     return Transformed(found, lambda view: view.mapped(image))
 
 
-def turned(request: Json, *, about: int = 2) -> Transformed | None:
-    """Return a request turned by the angle whose cosine is 3/5, in space about one of the axes."""
+def turned(request: Json, *, about: int = 2, sides: tuple[int, int, int] = (3, 4, 5)) -> Transformed | None:
+    """Return a request turned by an angle of a right triangle with whole sides, in space about one of the axes."""
     size = dimension(request)
     if any("sides" in one for one in request.get("connections", ())):
         return None
     if size == 3 and about != 2 and any(one["kind"] == "spinning-frame" for one in request.get("connections", ())):
         return None
-    matrix = [["3/5", "-4/5"], ["4/5", "3/5"]]
-    numbers = np.array([[0.6, -0.8], [0.8, 0.6]])
+    cosine, sine = f"{sides[0]}/{sides[2]}", f"{sides[1]}/{sides[2]}"
+    c, s = sides[0] / sides[2], sides[1] / sides[2]
+    matrix = [[cosine, f"-{sine}"], [sine, cosine]]
+    numbers = np.array([[c, -s], [s, c]])
     if size == 3:
         i, j = [axis for axis in range(3) if axis != about]
         whole = [["1" if r == c else "0" for c in range(3)] for r in range(3)]
         numbers = np.eye(3)
-        for r, c, entry, value in ((i, i, "3/5", 0.6), (i, j, "-4/5", -0.8), (j, i, "4/5", 0.8), (j, j, "3/5", 0.6)):
-            whole[r][c] = entry
-            numbers[r, c] = value
+        for row, column in ((0, 0), (0, 1), (1, 0), (1, 1)):
+            r, q = (i, j)[row], (i, j)[column]
+            numbers[r, q] = [[c, -s], [s, c]][row][column]
+            whole[r][q] = matrix[row][column]
         matrix = whole
     found = copy.deepcopy(request)
 
@@ -117,7 +120,7 @@ def turned(request: Json, *, about: int = 2) -> Transformed | None:
             body["velocity"] = vector(body["velocity"])
         if turns(body):
             if size == 2:
-                body["angle"] = plus(body.get("angle", 0), "acos(3/5)")
+                body["angle"] = plus(body.get("angle", 0), f"acos({cosine})")
             else:
                 body["axes"] = [vector(axis) for axis in body.get("axes", [[1, 0, 0], [0, 1, 0], [0, 0, 1]])]
     for connection in found.get("connections", ()):
@@ -128,11 +131,11 @@ def turned(request: Json, *, about: int = 2) -> Transformed | None:
         if size == 2 and connection.get("b", "ground") == "ground":
             for key in ("rest_angle", "at_least", "at_most"):
                 if key in connection:
-                    connection[key] = plus(connection[key], "acos(3/5)")
+                    connection[key] = plus(connection[key], f"acos({cosine})")
         if isinstance(connection.get("torque"), list):
             connection["torque"] = vector(connection["torque"])
-        _turn_slopes(connection, request, size, vector)
-    angle = float(np.arccos(0.6))
+        _turn_slopes(connection, request, size, vector, f"acos({cosine})")
+    angle = float(np.arccos(c))
     # The potential of a torque is zero where the angle is.
     shifted = ("potential", "total") if any(one["kind"] == "torque" for one in request.get("connections", ())) else ()
 
@@ -160,7 +163,7 @@ def turned(request: Json, *, about: int = 2) -> Transformed | None:
     return Transformed(found, lambda view: without_freedoms(view.mapped(image)), lambda view, _: without_freedoms(view))
 
 
-def _turn_slopes(connection: Json, request: Json, size: int, vector: Callable[[Any], list[Any]]) -> None:
+def _turn_slopes(connection: Json, request: Json, size: int, vector: Callable[[Any], list[Any]], angle: str) -> None:
     """Turn the faces and lines of a connection that are given in the axes of space."""
     if (
         connection["kind"] == "slider"
@@ -168,7 +171,7 @@ def _turn_slopes(connection: Json, request: Json, size: int, vector: Callable[[A
         and "direction" not in connection
         and in_space(connection["b"], request)
     ):
-        connection["slope"] = plus(connection.get("slope", 0), "acos(3/5)")
+        connection["slope"] = plus(connection.get("slope", 0), angle)
     on = connection.get("on")
     if on is None or not in_space(on["at"], request):
         return
@@ -176,7 +179,7 @@ def _turn_slopes(connection: Json, request: Json, size: int, vector: Callable[[A
         if key in on:
             on[key] = vector(on[key])
     if size == 2 and "radius" not in on and "normal" not in on:
-        on["slope"] = plus(on.get("slope", 0), "acos(3/5)")
+        on["slope"] = plus(on.get("slope", 0), angle)
 
 
 def _quaternions_after(about: int, angle: float, q: np.ndarray) -> np.ndarray:
@@ -282,4 +285,5 @@ def reversed_in_time(request: Json) -> Transformed | None:
         own = view.mapped(image)
         return replace(own, times=-own.times, events=[], ended=None, found={})
 
-    return Transformed(found, whole)
+    # What ends the motion is an event of one answer, and of the other one before its start, where nothing is compared.
+    return Transformed(found, whole, lambda view, _: replace(view, events=[]))
