@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from random import Random
+from typing import NamedTuple
 
 import numpy as np
 
 from core.multibody.answer import SceneSolution
-from core.multibody.audit.definition import Definition
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.energy import kinetic
 from core.multibody.audit.failure import MARGIN, Ledger
@@ -24,8 +24,8 @@ from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twi
 from core.multibody.audit.samples import ATTITUDE, POSITION, SPIN, VELOCITY, Samples
 from core.systems.trajectory import MotionEvent
 
-MOST_IMPACTS = 2
-"""Impacts that are compared, six samples each."""
+MOST_IMPACTS = 8
+"""Impacts that are compared, all at once: each takes six samples, in two phases."""
 
 NEAR = 2.0**-14
 """Distance of the samples, in units of the quickest motion."""
@@ -81,105 +81,90 @@ class Impacts:
         samples : Samples
             At `times`.
         """
-        if any(not samples.spun(name) for name, body in description.bodies.items() if body.inertia is not None):
+        spun = all(samples.spun(name) for name, body in description.bodies.items() if body.inertia is not None)
+        if not self.groups or not spun or description.undefined:
             return
-        if description.undefined:
+        try:
+            self._check(ledger, description, freedoms, samples)
+        except Undefined:
             return
-        for k, group in enumerate(self.groups):
-            rows = samples.at(slice(ROWS * k, ROWS * (k + 1)))
-            try:
-                self._check(ledger, description, freedoms, rows, group)
-            except Undefined:
-                continue
 
-    def _check(
-        self,
-        ledger: Ledger,
-        description: Description,
-        freedoms: Freedoms,
-        rows: Samples,
-        events: Sequence[MotionEvent],
-    ) -> None:
-        before, after = _extrapolated(rows.at(slice(0, 3))), _extrapolated(rows.at(slice(3, 6)))
-        time = np.array([events[0].time])
+    def _check(self, ledger: Ledger, description: Description, freedoms: Freedoms, samples: Samples) -> None:
+        before, after = (_extrapolated(samples, first) for first in (0, 3))
+        times = np.array([group[0].time for group in self.groups])
         changes = {
-            name: Acceleration(after[1][name].velocity - twist.velocity, _difference(after[1][name], twist))
-            for name, twist in before[1].items()
+            name: Acceleration(
+                after.motion[name].velocity - twist.velocity, _minus(after.motion[name].spin, twist.spin)
+            )
+            for name, twist in before.motion.items()
         }
-        still = {name: Twist(np.zeros_like(twist.velocity), _zero(twist)) for name, twist in before[1].items()}
-        left, size = _rest(description, freedoms, before[0], still, changes, events)
-        unsure = {
-            name: (before[2][name][0] + after[2][name][0], before[2][name][1] + after[2][name][1])
-            for name in description.bodies
+        still = {
+            name: Twist(0.0 * twist.velocity, _minus(twist.spin, twist.spin)) for name, twist in before.motion.items()
         }
+        impulses = _impulses(description, before.placement, still, self.groups)
+        found = balance(description.impulsive, before.placement, still, changes, impulses, freedoms=freedoms)
+        left, size = np.abs(found.left()), found.size.max(axis=0, initial=0.0)
         reach = min((one.reach for one in description.connections if one.reach > 0.0), default=1.0)
-        tilt = max(float(one[0, ATTITUDE] + one[0, POSITION] / reach) for one in rows.errors.values())
-        spun = max((float(np.abs(twist.spin).max()) for twist in rows.motion.values() if twist.spin is not None),
-                   default=0.0)  # fmt: skip
+        tilt = np.max([one[:, ATTITUDE] + one[:, POSITION] / reach for one in samples.errors.values()], axis=0)[::ROWS]
+        spins = [np.abs(one.spin).reshape(len(times), -1) for one in samples.motion.values() if one.spin is not None]
+        spun = np.max([one.max(axis=1) for one in spins], axis=0) if spins else np.zeros(len(times))
         # Attitudes are extrapolated up to the cube of the angle between samples.
-        tilt += (spun * self.step) ** 3
-        momenta = sum(
-            body.mass * unsure[name][0] + _largest(body.inertia) * unsure[name][1]
-            for name, body in description.bodies.items()
-        )
-        known = (KNOWN + MARGIN * tilt) * size + MARGIN * momenta
-        worst = int(np.argmax(left))
-        ledger.compare("momentum at an impact", freedoms.body(worst), time, left[worst : worst + 1], known)
-        self._check_energy(ledger, description, rows, (before, after), events)
+        tilt = tilt + (spun * self.step) ** 3
+        momenta, speed = np.zeros(len(times)), np.zeros(len(times))
         arm = max((one.arm + one.reach for one in description.connections), default=0.0)
-        speed = sum(velocity + arm * spin for velocity, spin in unsure.values())
-        fastest = max(float(np.abs(twist.velocity).max()) for twist in rows.motion.values()) + arm * spun
-        self._check_restitution(ledger, description, (before, after), events, speed + (KNOWN + tilt) * fastest)
+        for name, body in description.bodies.items():
+            moved, turned = (before.unsure[name][k] + after.unsure[name][k] for k in (0, 1))
+            momenta = momenta + body.mass * moved + body.moment * turned
+            speed = speed + moved + arm * turned
+        known = (KNOWN + MARGIN * tilt) * size + MARGIN * momenta
+        for k in np.flatnonzero(~(left <= known).all(axis=0)).tolist():
+            worst = int(np.argmax(left[:, k]))
+            own = slice(k, k + 1)
+            ledger.compare("momentum at an impact", freedoms.body(worst), times[own], left[worst, own], known[own])
+        self._check_energy(ledger, description, (before, after), times)
+        velocities = [np.abs(one.velocity).reshape(len(times), -1).max(axis=1) for one in samples.motion.values()]
+        fastest = np.max(velocities, axis=0) + arm * spun
+        self._check_restitution(ledger, description, (before, after), speed + (KNOWN + tilt) * fastest)
 
     def _check_energy(
-        self,
-        ledger: Ledger,
-        description: Description,
-        rows: Samples,
-        sides: Sequence[_Side],
-        events: Sequence[MotionEvent],
+        self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], times: Numbers
     ) -> None:
         if any(connection.driven for connection in description.connections):
             # What drives may bring energy while impulses act.
             return
-        energies = [
-            float(kinetic(description, Samples(rows.times[:1], *side[:2], {}, rows.errors, {})).max()) for side in sides
-        ]
-        loss = sum(event.energy_loss for event in events)
-        allowed = KNOWN * sum(energies) + 8.0 * ledger.rounding * abs(loss)
-        for _, motion, unsure in sides:
+        energies = [kinetic(description, Samples(times, side.placement, side.motion, {}, {}, {})) for side in sides]
+        loss = np.array([sum(event.energy_loss for event in group) for group in self.groups])
+        allowed = KNOWN * (energies[0] + energies[1]) + 8.0 * ledger.rounding * np.abs(loss)
+        for side in sides:
             for name, body in description.bodies.items():
-                spin = motion[name].spin
-                allowed += MARGIN * body.mass * float(np.abs(motion[name].velocity).sum()) * unsure[name][0]
-                if spin is not None:
-                    allowed += MARGIN * _largest(body.inertia) * float(np.abs(spin).sum()) * unsure[name][1]
-        off = np.array([energies[0] - energies[1] - loss])
-        time = np.array([events[0].time])
-        ledger.compare("energy that an impact takes", events[0].name, time, off, allowed)
-        ledger.compare("no gain of energy at an impact", events[0].name, time, np.array([min(loss, 0.0)]), allowed)
+                twist, (moved, turned) = side.motion[name], side.unsure[name]
+                allowed = allowed + MARGIN * body.mass * np.abs(twist.velocity).sum(axis=1) * moved
+                if twist.spin is not None:
+                    allowed = (
+                        allowed + MARGIN * body.moment * np.abs(twist.spin).reshape(len(times), -1).sum(axis=1) * turned
+                    )
+        ledger.compare("energy that an impact takes", "", times, energies[0] - energies[1] - loss, allowed)
+        ledger.compare("no gain of energy at an impact", "", times, np.minimum(loss, 0.0), allowed)
 
     def _check_restitution(
-        self,
-        ledger: Ledger,
-        description: Description,
-        sides: Sequence[_Side],
-        events: Sequence[MotionEvent],
-        known: float,
+        self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], known: Numbers
     ) -> None:
-        if len(events) > 1:
-            # Of several at once each may act more than once.
-            return
-        found = _one_sided(description, events[0].name, sides[0][0])
-        if found is None or found[0].coefficients is None:
-            return
-        connection, force = found
-        rates = [float(rate(lambda at: connection.gaps(at)[force], *side[:2]).max()) for side in sides]
-        assert connection.coefficients is not None, "the caller knows them"
-        expected = -connection.coefficients.restitution * rates[0]
-        # Bounces that are too small to be followed end: what has come to rest stays closed.
-        off = min(abs(rates[1] - expected), abs(rates[1]))
-        time = np.array([events[0].time])
-        ledger.compare("restitution", connection.name, time, np.array([off]), MARGIN * known)
+        """Compare the rates of the gap to which an impact happens; of several at once each may act more than once."""
+        for connection in description.connections:
+            touch = connection.coefficients
+            for force in connection.gaps(sides[0].placement) if touch is not None else ():
+                name = force.rsplit(".", 1)[0]
+                rows = [k for k, group in enumerate(self.groups) if len(group) == 1 and group[0].name == name]
+                if not rows or touch is None:
+                    continue
+                before, after = (
+                    rate(lambda at, of=connection, force=force: of.gaps(at)[force], side.placement, side.motion)[rows]  # type: ignore[misc]
+                    for side in sides
+                )
+                # Bounces that are too small to be followed end: what has come to rest stays closed.
+                off = np.minimum(np.abs(after + touch.restitution * before), np.abs(after))
+                times = np.array([self.groups[k][0].time for k in rows])
+                ledger.compare("restitution", connection.name, times, off, MARGIN * known[rows])
 
 
 def _accumulates(answer: SceneSolution, time: float, step: float) -> bool:
@@ -190,75 +175,70 @@ def _accumulates(answer: SceneSolution, time: float, step: float) -> bool:
     return False
 
 
-_Side = tuple[Placement, Motion, dict[str, tuple[float, float]]]
-"""The state on one side of an impact, and how wrong the velocity and the spin of every body may be."""
+class _Side(NamedTuple):
+    """The states on one side of some impacts.
+
+    Attributes
+    ----------
+    unsure : mapping of str to two ndarrays
+        How wrong the velocity and the spin of every body may be at each.
+    """
+
+    placement: Placement
+    motion: Motion
+    unsure: Mapping[str, tuple[Numbers, Numbers]]
 
 
-def _extrapolated(rows: Samples) -> _Side:
-    """Return the state on one side of an impact from three samples, the nearest first: as one sample."""
+def _extrapolated(samples: Samples, first: int) -> _Side:
+    """Return the states on one side of impacts, from three of the samples of each, the nearest first.
+
+    Parameters
+    ----------
+    first : int
+        Number of the nearest among the samples of an impact.
+    """
+    near, next_to, far = (slice(first + k, None, ROWS) for k in range(3))
 
     def of(x: Numbers | None) -> Numbers | None:
-        return None if x is None else 3.0 * (x[:1] - x[1:2]) + x[2:]
+        return None if x is None else 3.0 * (x[near] - x[next_to]) + x[far]
 
-    def bend(x: Numbers) -> float:
-        return float(np.abs(x[:1] - 2.0 * x[1:2] + x[2:]).max())
+    def bend(x: Numbers | None, error: Numbers) -> Numbers:
+        if x is None:
+            return np.zeros(len(error[near]))
+        bent = np.abs(x[near] - 2.0 * x[next_to] + x[far])
+        known: Numbers = bent.reshape(len(bent), -1).max(axis=1) + WEIGHTS * error[near]
+        return known
 
     placement, motion, unsure = {}, {}, {}
-    for name, pose in rows.placement.items():
-        twist, error = rows.motion[name], rows.errors[name][0]
-        position, velocity = of(pose.position), of(twist.velocity)
-        assert position is not None, "every body has a position"
-        assert velocity is not None, "every body has a velocity"
-        placement[name] = Pose(position, of(pose.rotation), of(pose.turn), of(pose.time))
-        motion[name] = Twist(velocity, of(twist.spin))
-        spin = 0.0 if twist.spin is None else bend(twist.spin) + WEIGHTS * float(error[SPIN])
-        unsure[name] = bend(twist.velocity) + WEIGHTS * float(error[VELOCITY]), spin
-    return placement, motion, unsure
+    for name, pose in samples.placement.items():
+        twist, error = samples.motion[name], samples.errors[name]
+        placement[name] = Pose(*map(of, pose))  # type: ignore[arg-type]
+        motion[name] = Twist(*map(of, twist))  # type: ignore[arg-type]
+        unsure[name] = bend(twist.velocity, error[:, VELOCITY]), bend(twist.spin, error[:, SPIN])
+    return _Side(placement, motion, unsure)
 
 
-def _largest(inertia: Numbers | None) -> float:
-    return 0.0 if inertia is None else float(np.abs(inertia).max())
+def _minus(after: Numbers | None, before: Numbers | None) -> Numbers | None:
+    return None if after is None or before is None else after - before
 
 
-def _difference(after: Twist, before: Twist) -> Numbers | None:
-    return None if after.spin is None or before.spin is None else after.spin - before.spin
-
-
-def _zero(twist: Twist) -> Numbers | None:
-    return None if twist.spin is None else np.zeros_like(twist.spin)
-
-
-def _one_sided(description: Description, name: str, placement: Placement) -> tuple[Definition, str] | None:
-    """Return the connection to which an event happens, and the force that keeps its gap."""
-    for connection in description.connections:
-        for force in connection.gaps(placement):
-            if force.rsplit(".", 1)[0] == name:
-                return connection, force
-    return None
-
-
-def _rest(
-    description: Description,
-    freedoms: Freedoms,
-    placement: Placement,
-    still: Motion,
-    changes: Mapping[str, Acceleration],
-    events: Sequence[MotionEvent],
-) -> tuple[Numbers, float]:
-    """Return what is left over of the changes of momenta less the impulses, shape (freedoms,), and its size."""
+def _impulses(
+    description: Description, placement: Placement, still: Motion, groups: Sequence[Sequence[MotionEvent]]
+) -> Mapping[str, Numbers]:
+    """Return the impulses of one-sided connections and of laws at every impact, NaN where contacts could share them."""
     impulses: dict[str, Numbers] = {}
+    ends: dict[str, str] = {}
     for connection in description.connections:
-        forces = [*connection.efforts(placement, still), *connection.laws(placement, still)]
-        if connection.gaps(placement) or connection.laws(placement, still):
+        laws, gaps = connection.laws(placement, still), connection.gaps(placement)
+        if gaps or laws:
             # What is one-sided or acts by a law takes no impulse but those that are answered.
-            impulses.update((force, np.zeros(1)) for force in forces)
-    for event in events:
-        found = _one_sided(description, event.name, placement)
-        if found is None:
-            continue
-        for name, value in event.impulses.items():
-            force = found[1] if name == "normal" else f"{event.name}.{name}"
-            shared = event.errors.impulses.get(name, 0.0) is None
-            impulses[force] = np.array([np.nan if shared else value])
-    found_rest = balance(description.impulsive, placement, still, changes, impulses, freedoms=freedoms)
-    return np.abs(found_rest.left())[:, 0], float(found_rest.size.max(initial=0.0))
+            forces = [*connection.efforts(placement, still), *laws]
+            impulses.update((force, np.zeros(len(groups))) for force in forces)
+        ends.update((force.rsplit(".", 1)[0], force) for force in gaps)
+    for k, group in enumerate(groups):
+        for event in group:
+            for name, value in event.impulses.items() if event.name in ends else ():
+                force = ends[event.name] if name == "normal" else f"{event.name}.{name}"
+                shared = event.errors.impulses.get(name, 0.0) is None
+                impulses.setdefault(force, np.zeros(len(groups)))[k] = np.nan if shared else value
+    return impulses

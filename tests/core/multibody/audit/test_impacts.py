@@ -77,3 +77,19 @@ def test_bodies_that_spin_quickly_after_an_impact_pass(seed: int) -> None:
     # Their attitudes turn between the samples by more than the size of the scene and its speed say.
     horizon = float(np.random.default_rng(seed).choice([0.5, 2.0, 10.0]))
     solve_scene(read(contact_judge.any_scene(seed)), np.linspace(0.0, horizon, 21), accuracy=1e-6)
+
+
+def test_each_of_eight_impacts_is_compared() -> None:
+    description: dict[str, Any] = {
+        "gravity": [0, -10],
+        "bodies": {"ball": {"mass": 1, "at": [0, 1.25]}},
+        "connections": [{"kind": "contact", "place": "ball", "on": {"at": [0, 0]}, "restitution": 1}],
+    }
+    one = answered(description, [0.0, 8.0])
+    struck = [k for k, event in enumerate(one.answer.events) if event.impulses]
+    assert len(struck) == 8
+    for wrong in struck:
+        events = tuple(
+            replace(event, energy_loss=1e-3) if k == wrong else event for k, event in enumerate(one.answer.events)
+        )
+        assert replace(one, answer=replace(one.answer, events=events)).failure() is not None
