@@ -425,7 +425,7 @@ def variants() -> Named:
                         "question": {"path": path, "request": question},
                         "vary": {pointer: vary},
                         "seed": 0,
-                        "count": 2,
+                        "count": 1,
                         "draws": 2,
                     },
                 )
