@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
-
-import pytest
 
 ROOT = Path(__file__).parent.parent
 CORE = sorted((ROOT / "core").rglob("*.py"))
@@ -109,12 +108,31 @@ def package(path: Path, top: str) -> str:
     return path.relative_to(ROOT / top).parts[0].removesuffix(".py")
 
 
-@pytest.mark.parametrize("path", CORE, ids=name)
+def for_each(files: Iterable[Path]) -> Callable[[Callable[[Path], None]], Callable[[], None]]:
+    """Return what makes one test of a rule for files: a test for each file would be a quarter of all tests."""
+
+    def test_of(rule: Callable[[Path], None]) -> Callable[[], None]:
+        def test() -> None:
+            broken = []
+            for path in files:
+                try:
+                    rule(path)
+                except AssertionError as error:
+                    broken.append(f"{name(path)}: {error}")
+            assert not broken, "\n".join(broken)
+
+        test.__doc__ = rule.__doc__
+        return test
+
+    return test_of
+
+
+@for_each(CORE)
 def test_core_imports_no_web_package(path: Path) -> None:
     assert not {entry.split(".")[0] for entry in imports(path)} & WEB
 
 
-@pytest.mark.parametrize("path", CORE, ids=name)
+@for_each(CORE)
 def test_core_imports_downwards(path: Path) -> None:
     own = package(path, "core")
     seen = {entry.split(".")[1] for entry in imports(path) if entry.startswith("core.")} - {own}
@@ -124,7 +142,7 @@ def test_core_imports_downwards(path: Path) -> None:
         assert own in (*OUTER, "__init__"), f"core/{own} is missing from ALLOWED"
 
 
-@pytest.mark.parametrize("path", CORE, ids=name)
+@for_each(CORE)
 def test_core_neither_prints_nor_reads_the_environment_nor_logs(path: Path) -> None:
     for node in nodes(path):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
@@ -139,7 +157,7 @@ def layer(own: str) -> int:
     return next(i for i, members in enumerate(SERVICE_LAYERS) if own in members)
 
 
-@pytest.mark.parametrize("path", SERVICE, ids=name)
+@for_each(SERVICE)
 def test_service_imports_downwards(path: Path) -> None:
     own = package(path, "service")
     for entry in imports(path):
@@ -149,7 +167,7 @@ def test_service_imports_downwards(path: Path) -> None:
                 assert layer(other) <= layer(own), f"{own} imports {other}"
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "core" / "multibody").rglob("*.py")), ids=name)
+@for_each(sorted((ROOT / "core" / "multibody").rglob("*.py")))
 def test_multibody_imports_downwards(path: Path) -> None:
     height = {member: level for level, members in enumerate(MULTIBODY_LAYERS) for member in members}
     own = package(path, "core/multibody")
@@ -159,7 +177,7 @@ def test_multibody_imports_downwards(path: Path) -> None:
             assert other == own or height[other] < height[own], f"{own} imports {other}"
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "core" / "multibody" / "audit").rglob("*.py")), ids=name)
+@for_each(sorted((ROOT / "core" / "multibody" / "audit").rglob("*.py")))
 def test_the_audit_shares_nothing_with_what_it_checks(path: Path) -> None:
     """It reads the description and the answer, and knows none of the equations that the answer comes from."""
     seen = {entry for entry in imports(path) if entry.startswith("core.")}
@@ -175,25 +193,25 @@ def test_the_audit_shares_nothing_with_what_it_checks(path: Path) -> None:
     assert not {"scipy", "numba", "flint"} & {entry.split(".")[0] for entry in imports(path)}
 
 
-@pytest.mark.parametrize("path", SERVICE, ids=name)
+@for_each(SERVICE)
 def test_the_service_has_no_mechanics(path: Path) -> None:
     """Routes call core; they use no mathematics of their own."""
     assert not {"scipy", "numba", "mpmath", "flint"} & {entry.split(".")[0] for entry in imports(path)}
 
 
-@pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
+@for_each(CORE + SERVICE)
 def test_no_function_assigns_a_global(path: Path) -> None:
     for node in nodes(path):
         assert not isinstance(node, ast.Global), "no global mutable state"
 
 
-@pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
+@for_each(CORE + SERVICE)
 def test_modules_are_named_by_content_and_are_of_limited_length(path: Path) -> None:
     assert path.stem not in ("utils", "util", "helpers", "helper", "common", "models", "misc", "base", "types")
     assert len(path.read_text().splitlines()) <= 700
 
 
-@pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
+@for_each(CORE + SERVICE)
 def test_every_module_has_a_docstring(path: Path) -> None:
     text = ast.get_docstring(tree(path))
     assert text or path.name == "__init__.py"
@@ -335,7 +353,7 @@ def defines_something(path: Path) -> bool:
     return any(isinstance(node, ast.FunctionDef | ast.ClassDef) for node in nodes(path))
 
 
-@pytest.mark.parametrize("path", [p for p in CORE if p.name != "__init__.py" and defines_something(p)], ids=name)
+@for_each([p for p in CORE if p.name != "__init__.py" and defines_something(p)])
 def test_tests_mirror_the_code(path: Path) -> None:
     own = ROOT / "tests" / path.parent.relative_to(ROOT) / f"test_{path.name}"
     through = TESTED_IN.get(name(path))
