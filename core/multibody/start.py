@@ -24,6 +24,10 @@ class _Named(Protocol):
     def why(self) -> str: ...
 
 
+UNDECIDED = "undecided"
+"""The name of the model of what mechanics does not decide from the start on."""
+
+
 class NumberKind(NamedTuple):
     """How numbers of the start are written: each, and the bound of its error, None where digits are proven."""
 
@@ -35,11 +39,16 @@ DOUBLES = NumberKind(in_doubles, error_in_doubles)
 
 
 def name_of_parts(parts: Sequence[_Named]) -> tuple[str, str]:
-    """Return the name of a scene's model and why it suffices, from those of its parts."""
+    """Return the name of the model of parts that move independently, and why it suffices.
+
+    What rests beside something that moves has no name of its own in it.
+    """
     if not parts:
         return "rest", "the connections hold everything where it is"
-    if len({part.name for part in parts}) == 1:
-        return parts[0].name, parts[0].why
+    undecided = [part for part in parts if part.name == UNDECIDED]
+    moving = undecided[:1] or [part for part in parts if part.name != "rest"] or parts[:1]
+    if len({part.name for part in moving}) == 1:
+        return moving[0].name, moving[0].why
     return "parts apart", "the parts have no force or connection in common, and each has its own model"
 
 

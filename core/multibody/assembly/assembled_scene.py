@@ -32,7 +32,7 @@ from core.multibody.assembly.exact_places import BITS, DIGITS, exact_places, siz
 from core.multibody.assembly.four_bar import four_bar_of, place_of
 from core.multibody.assembly.metric import Metric, metric_of
 from core.multibody.assembly.misfit import refusal
-from core.multibody.assembly.nearest_places import Nearest, Sketch
+from core.multibody.assembly.nearest_places import NearestPlace, Sketch
 from core.multibody.assembly.nearest_velocities import nearest_rates
 from core.multibody.assembly.quadratics import Quadratics
 from core.multibody.language.connection import Connection
@@ -70,7 +70,7 @@ class _Places:
     """The coordinates that were found for a table."""
 
     q: list[Ball]
-    found: Sequence[Nearest]
+    found: Sequence[NearestPlace]
     extent: float
 
 
@@ -159,7 +159,7 @@ def _met(
     metric: Metric,
     free: Sequence[int],
     extent: float,
-) -> tuple[Sequence[Nearest], list[Ball]]:
+) -> tuple[Sequence[NearestPlace], list[Ball]]:
     """Return the nearest places at which measures vanish, in doubles with others, and in balls."""
     table, frames = found.measures.table, found.measures.coordinates.frames
     if all(is_zero(evaluated(measure, table.q)) for measure in measures):

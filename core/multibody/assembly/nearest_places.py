@@ -32,7 +32,7 @@ OTHER_STARTS = 6
 
 
 @dataclass(frozen=True)
-class Nearest:
+class NearestPlace:
     """Places where all measures vanish.
 
     Attributes
@@ -66,7 +66,7 @@ class Sketch:
     across: Floats
     counts: Floats
 
-    def nearest_from(self, start: Floats) -> Nearest | None:
+    def nearest_from(self, start: Floats) -> NearestPlace | None:
         """Return the places at which the displacement is least near a start; None where the measures are not met.
 
         Parameters
@@ -95,7 +95,7 @@ class Sketch:
             if further is None:
                 break
             q = further
-        return Nearest(q, self.distance(q))
+        return NearestPlace(q, self.distance(q))
 
     def distance(self, q: Floats) -> float:
         """Return the displacement of places (m)."""
@@ -119,7 +119,7 @@ class Sketch:
             share /= 2.0
         return None
 
-    def found(self, spread: float) -> list[Nearest]:
+    def found(self, spread: float) -> list[NearestPlace]:
         """Return the places that were found from the sketch and from places beside it, the nearest first.
 
         Parameters
@@ -131,7 +131,7 @@ class Sketch:
         random = np.random.default_rng(20)
         starts = [np.zeros(len(self.counts))]
         starts += [spread * self.counts * random.uniform(-1.0, 1.0, len(self.counts)) for _ in range(OTHER_STARTS)]
-        found: list[Nearest] = []
+        found: list[NearestPlace] = []
         for start in starts:
             one = self.nearest_from(start)
             if one is None:

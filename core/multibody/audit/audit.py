@@ -30,7 +30,7 @@ from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, moved
 from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
-from core.multibody.audit.searches import Searches
+from core.multibody.audit.searches import SearchedQuantities
 from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of
 from core.multibody.audit.totals import check_totals, with_totals
 from core.multibody.audit.windows import NODES, check_windows, nodes
@@ -233,7 +233,7 @@ class _Audit:
                     struck = impacts.times
                 if answer.occurrences or answer.extremes:
                     ended = answer.ended
-                    searches = Searches(answer, self.random, self.latest if ended is None else ended.time)
+                    searches = SearchedQuantities(answer, self.random, self.latest if ended is None else ended.time)
                     forces = True
             if self.own:
                 repeated = times_of_period(answer)
@@ -272,7 +272,7 @@ class _Asked:
         How many samples belong to the period.
     impacts : Impacts or None
         Its samples are behind those of the period.
-    searches : Searches or None
+    searches : SearchedQuantities or None
     """
 
     part: Part
@@ -280,7 +280,7 @@ class _Asked:
     halves: list[float]
     repeated: int
     impacts: Impacts | None
-    searches: Searches | None
+    searches: SearchedQuantities | None
 
 
 def _spun(description: Description, samples: Samples) -> bool:

@@ -38,6 +38,7 @@ ROOTS_KNOWN = 1e-8
 """Share to which the product over all roots is known at least: that of the rates, 1e-10, and some products."""
 
 STENCIL = (-2.0, -1.0, 1.0, 2.0)
+"""Multiples of a step at which a function is evaluated for its rate."""
 WEIGHTS = np.array([[1.0, -8.0, 8.0, -1.0], [0.0, -6.0, 6.0, 0.0]]) / 12.0
 """Rates of a function from its values at multiples of a step, up to the fourth power of that, and up to the second."""
 

@@ -20,7 +20,7 @@ from core.multibody.audit.joints import (
 )
 from core.multibody.audit.placement import Numbers, Place, length
 from core.multibody.language.connection import TwoEnded
-from core.multibody.language.joints import BallJoint, Pin, Rod, Slider, Track, Weld
+from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 
 
 @definition_of.register
@@ -73,7 +73,7 @@ def rod(connection: Rod, reader: Reader, name: str, path: Path) -> Definition:
 
 
 @definition_of.register
-def track(connection: Track, reader: Reader, name: str, path: Path) -> Definition:
+def track(connection: GuideCurve, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a track."""
     where, on = (*path, "on"), connection.on
     place, at = reader.place(connection.place, (*path, "place")), reader.place(on["at"], (*where, "at"))

@@ -98,7 +98,7 @@ class Freedoms:
 
 
 @dataclass(frozen=True)
-class Balance:
+class EquationBalance:
     """What is left over of the equations at some samples, shapes (freedoms, samples).
 
     Attributes
@@ -136,7 +136,7 @@ def balance(
     accelerations: Mapping[str, Acceleration],
     forces: Forces,
     freedoms: Freedoms | None = None,
-) -> Balance:
+) -> EquationBalance:
     """Return what is left over of the equations of motion at some samples.
 
     Parameters
@@ -178,7 +178,7 @@ def balance(
             load = connection.load(placement, motion, virtual)
             rest[numbers] -= load
             size[numbers] += np.abs(load)
-    return Balance(rest, size, _free(held))
+    return EquationBalance(rest, size, _free(held))
 
 
 def _add_inertia(

@@ -23,7 +23,7 @@ ULPS = 2.0**-50
 Found = Occurrence | SceneExtremes
 
 
-class Searches:
+class SearchedQuantities:
     """Occurrences and extremes of an answer, with the times at which their values are compared.
 
     Parameters

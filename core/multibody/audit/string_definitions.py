@@ -13,9 +13,9 @@ from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.placement import length
 from core.multibody.audit.strings import (
     ChainDefinition,
-    Knot,
-    Run,
     StringDefinition,
+    StringPoint,
+    StringRun,
     run_of,
 )
 from core.multibody.language.strings import Chain, String
@@ -24,15 +24,15 @@ from core.multibody.language.strings import Chain, String
 @definition_of.register
 def string(connection: String, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a string."""
-    knots: list[Knot] = []
+    knots: list[StringPoint] = []
     sides: list[tuple[str, ...]] = []
     for i, entry in enumerate(connection.through):
         place, radius = reader.place(entry, (*path, "through", i)), reader.rim(entry)
         slips = entry in connection.slips if isinstance(entry, str) else True
-        knots.append(Knot(place, radius, None if slips or not radius else place.body))
+        knots.append(StringPoint(place, radius, None if slips or not radius else place.body))
         given = connection.sides.get(entry, ()) if isinstance(entry, str) else ()
         sides.append((given,) if isinstance(given, str) else tuple(given))
-    runs: list[Run] = []
+    runs: list[StringRun] = []
     given = None if connection.length is None else reader.number(connection.length, (*path, "length"))
     ends = [0, *(i for i in range(1, len(knots) - 1) if knots[i].drum is not None), len(knots) - 1]
     for number, (first, last) in enumerate(pairwise(ends)):

@@ -37,7 +37,7 @@ from core.multibody.audit.placement import (
 
 
 @dataclass(frozen=True)
-class Knot:
+class StringPoint:
     """What a string passes.
 
     Attributes
@@ -65,8 +65,8 @@ class Straight:
         Its direction at the start.
     """
 
-    a: Knot
-    b: Knot
+    a: StringPoint
+    b: StringPoint
     senses: tuple[int, int] = (0, 0)
     start: tuple[float, ...] = ()
 
@@ -117,7 +117,7 @@ class Straight:
 
 
 @dataclass(frozen=True)
-class Run:
+class StringRun:
     """What is between two ends, or drums without slip: one tension.
 
     Attributes
@@ -146,7 +146,7 @@ class StringDefinition(Definition):
     """An inextensible string: every run of it is at most as long as it is; tensions pull its places together."""
 
     kind: ClassVar[str] = "string"
-    runs: tuple[Run, ...]
+    runs: tuple[StringRun, ...]
     touch: Touch
 
     @property
@@ -171,7 +171,7 @@ class StringDefinition(Definition):
     def gaps(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.gaps`.
 
-        A string over drums may lack whole turns of the courses of its parts: see `Run.steps`.
+        A string over drums may lack whole turns of the courses of its parts: see `StringRun.steps`.
         """
         return {f"{run.name}.tension": run.length - run.extent(placement) for run in self.runs}
 
@@ -180,7 +180,7 @@ class StringDefinition(Definition):
         return {f"{run.name}.tension": -rate(run.extent, placement, motion) for run in self.runs}
 
 
-def straight(a: Knot, b: Knot, sides: tuple[str | None, str | None], placement: Placement) -> Straight:
+def straight(a: StringPoint, b: StringPoint, sides: tuple[str | None, str | None], placement: Placement) -> Straight:
     """Return the straight part that touches the given sides of its drums at the start.
 
     Parameters
@@ -212,12 +212,17 @@ def _is_on(way: Numbers, side: str) -> bool:
     return bool(sign * way[component] > 0)
 
 
-def run_of(name: str, knots: tuple[Knot, ...], sides: tuple[tuple[str | None, str | None], ...], given: float | None,
-           start: Placement) -> Run:  # fmt: skip
+def run_of(
+    name: str,
+    knots: tuple[StringPoint, ...],
+    sides: tuple[tuple[str | None, str | None], ...],
+    given: float | None,
+    start: Placement,
+) -> StringRun:
     """Return a run through some knots, as long as it is at the start unless its length is given."""
     parts = tuple(straight(a, b, pair, start) for (a, b), pair in zip(pairwise(knots), sides, strict=True))
-    run = Run(name, parts, 0.0)
-    return Run(name, parts, float(run.extent(start)) if given is None else given)
+    run = StringRun(name, parts, 0.0)
+    return StringRun(name, parts, float(run.extent(start)) if given is None else given)
 
 
 @dataclass(frozen=True)

@@ -81,7 +81,7 @@ class Rod(TwoEnded):
 
 
 @dataclass(frozen=True)
-class Track(Connection):
+class GuideCurve(Connection):
     """A place stays on a curve or surface.
 
     `on` is a line ``{at, slope}`` (in space ``{at, direction}``), a circle or sphere ``{at, radius}``, a parabola

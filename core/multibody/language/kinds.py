@@ -19,7 +19,7 @@ from core.multibody.language.forces import (
     Torque,
     TorsionSpring,
 )
-from core.multibody.language.joints import BallJoint, Pin, Rod, Slider, Track, Weld
+from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.strings import Chain, String
 
 KINDS: Mapping[str, type[Connection]] = MappingProxyType(
@@ -32,7 +32,7 @@ KINDS: Mapping[str, type[Connection]] = MappingProxyType(
             Slider,
             Rod,
             Rolling,
-            Track,
+            GuideCurve,
             Contact,
             String,
             Chain,

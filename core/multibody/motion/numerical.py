@@ -47,6 +47,7 @@ ORDER, TOLERANCE = 24, 2.0**-56
 REFERENCE_ORDER, REFERENCE_TOLERANCE = 28, 2.0**-72
 FINE_ORDER, FINE_TOLERANCE = 32, 2.0**-100
 CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
+"""Of series in doubles, of what they are compared with, and of two runs in pairs whose difference is their error."""
 
 
 @dataclass

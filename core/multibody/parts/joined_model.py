@@ -3,38 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 from core.multibody.answer import SceneSolution
 from core.multibody.model_answer import SceneModel
-
-UNDECIDED = "undecided"
-"""The name of the model of what mechanics does not decide from the start on."""
-
-
-class _Named(Protocol):
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def why(self) -> str: ...
-
-
-def name_of(models: Sequence[_Named]) -> tuple[str, str]:
-    """Return the name of the model of parts that move independently, and why it suffices.
-
-    What rests beside something that moves has no name of its own in it.
-    """
-    undecided = [one for one in models if one.name == UNDECIDED]
-    moving = undecided[:1] or [one for one in models if one.name != "rest"] or list(models[:1])
-    if len({one.name for one in moving}) == 1:
-        return moving[0].name, moving[0].why
-    return "parts apart", "the parts have no force or connection in common, and each has its own model"
+from core.multibody.start import name_of_parts
 
 
 def joined_model(models: Sequence[SceneModel]) -> SceneModel:
     """Return the model of a scene from those of its parts."""
-    name, why = name_of(models)
+    name, why = name_of_parts(models)
     return SceneModel(
         name,
         why,

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from core.multibody.answer import MotionPhase, SceneSolution
-from core.multibody.parts.joined_model import name_of
+from core.multibody.start import name_of_parts
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def _phases_of(solution: SceneSolution) -> Sequence[MotionPhase]:
 
 
 def _joined(phases: Sequence[MotionPhase], start: float, end: float, late: Mapping[float, float]) -> MotionPhase:
-    name, why = name_of([_Model(phase.model, phase.why) for phase in phases])
+    name, why = name_of_parts([_Model(phase.model, phase.why) for phase in phases])
     return MotionPhase(
         start,
         end if math.isfinite(end) else None,

@@ -18,9 +18,10 @@ from core.multibody.motion.modelling import Modelled, models_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.accumulation import Accumulation
-from core.multibody.phases.tracks import FLOOR, Track, Tracks
+from core.multibody.phases.tracks import Track, Tracks
 from core.multibody.phases.turning_slip import ENDED, TurningSlip, turning_model
 from core.multibody.phases.uniform_pieces import keeps_its_forces, uniform_motion
+from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Force, Unilateral
 from core.multibody.table.description import Described
 from core.systems.trajectory import MotionEvent

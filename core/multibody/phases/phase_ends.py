@@ -18,12 +18,11 @@ from core.multibody.equations.polynomial_roots import first_negative, sharpened
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.shared_friction import first_without_share
-from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.phases.uniform_pieces import ExpandedUniform
 from core.multibody.phases.watches import Crossing, Watch, lengths, watches
-from core.multibody.search.bands import FLOOR
+from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.followed import Found
 from core.multibody.search.location import NotLocated, located

@@ -13,7 +13,7 @@ from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.packed import nearest, pair
 from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.phase import Phase
-from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
+from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.trajectory.column_errors import FINEST
 from core.multibody.trajectory.columns import NEAREST, Columns, Unknown
 from core.multibody.trajectory.nearest import Nearest

@@ -31,8 +31,9 @@ from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness
 from core.multibody.phases.spun_friction import require_pressed_in_plane
-from core.multibody.phases.tracks import FLOOR, Track, Tracks
+from core.multibody.phases.tracks import Track, Tracks
 from core.multibody.phases.turning_slip import turns
+from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
 from core.systems.trajectory import ImpactErrors, MotionEvent

@@ -22,7 +22,7 @@ from core.multibody.contacts.contact_states import State, grips
 from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.phase import Phase
-from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
+from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.table import Row, Table
 

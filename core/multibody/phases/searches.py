@@ -21,6 +21,7 @@ from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.equations.packed import nearest
 from core.multibody.phases.phase_columns import ColumnsInPhases
 from core.multibody.phases.stretches import Stretch, stretches
+from core.multibody.search.pieces import PAST_A_PERIOD
 from core.multibody.trajectory.column_errors import PLACES_BETWEEN, relative
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES
 from core.multibody.trajectory.occurrences import (
@@ -35,8 +36,6 @@ from core.multibody.trajectory.quantities import sought_in
 from core.multibody.trajectory.search_along import Hit, SearchAlong
 from core.systems.trajectory import Column, How
 
-_PAST = 1.0 + 2.0**-20
-"""Share of a period that is searched: what touches a value at the start does so at the end."""
 _WOUND = 2.0**-20
 """Share of the largest value by which what winds on differs from its start after a period, and nothing else does."""
 
@@ -65,7 +64,7 @@ class _Part:
         late = float(self.period.rad())
         once: list[Hit] = []
         again = 0
-        for hit in replace(self.along, end=_PAST * float(self.period)).hits(value):
+        for hit in replace(self.along, end=PAST_A_PERIOD * float(self.period)).hits(value):
             # What follows the end of a period follows the start, where it may not be known from the value there.
             image, earlier = hit.time - self.period, once[again] if again < len(once) else None
             if earlier is not None and abs(image - earlier.time) <= 2.0 * (hit.error + earlier.error + late):
@@ -184,7 +183,7 @@ class Searches:
         expansions = stretch.expansions(sought.follows)
         along = SearchAlong(expansions, sought, sampler, stretch.length, stretch.expanded)
         parts = stretch.whole.parts_of(sought.follows)
-        period = stretch.period(parts, stretch.length / _PAST)
+        period = stretch.period(parts, stretch.length / PAST_A_PERIOD)
         # What only winds on in a motion that repeats, as an angle does, has another value after a period.
         if period is not None and any(stretch.whole.parts[k][1].winds_on for k in parts):
             period = None

@@ -22,8 +22,8 @@ from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_ends import expansions_of
 from core.multibody.phases.phase_states import Times, columns_in, states_in
-from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.uniform_pieces import ExpandedUniform
+from core.multibody.search.bands import SAFETY_FACTOR
 from core.multibody.search.first_of_motion import Expansions
 from core.multibody.trajectory.along import period_within
 from core.systems.trajectory import Column, How

@@ -14,11 +14,8 @@ from dataclasses import dataclass, replace
 from flint import arb
 
 from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 
-SAFETY_FACTOR = 16.0
-"""The difference of the two tracks, times this, is what a state is taken to be wrong by."""
-FLOOR = 2.0**-96
-"""Share of the largest coordinate of its unit that a state is wrong by at least, once it is not exact."""
 NEGLIGIBLE_RATE = 2.0**-180
 """Share of the largest rate of its unit below which a rate is what is left of an exact zero."""
 

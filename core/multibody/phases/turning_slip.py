@@ -28,8 +28,8 @@ from core.multibody.equations.packed import exponent, pair
 from core.multibody.motion.modelling import Modelled, Piece
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.whole import Whole
-from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.reduction.reduction import Reduced
+from core.multibody.search.bands import SAFETY_FACTOR
 from core.multibody.table.connection_effects import Force, Unilateral
 from core.multibody.table.description import Described
 from core.multibody.table.measures import COMPONENTS
@@ -43,13 +43,16 @@ _BITS = 256
 _MOST_STEPS = 250
 """Steps that one phase of turning slip may take."""
 
-_PART, _LONGEST = 0.5, 1e6
+_PART = 0.5
+"""Share of the time in which slip could end that a step takes at most: the series diverges there."""
+_LONGEST = 1e6
+"""Longest step (s), where slip does not change at all."""
 _KINDS = {"fine": (32, 2.0**-96), "check": (30, 2.0**-90)}
 """Order and tolerance of the two runs."""
 
 
 @dataclass
-class Run:
+class SlipSeries:
     """Steps so far.
 
     Attributes
@@ -81,14 +84,14 @@ class TurningSlip(Motion):
     why: str = "the direction of friction turns with the slip"
     how: str = "measured against pairs"
     period: Ball | None = None
-    _runs: dict[str, Run] = field(default_factory=dict, repr=False)
+    _runs: dict[str, SlipSeries] = field(default_factory=dict, repr=False)
 
     @cached_property
     def chosen(self) -> list[int]:
         """Rows that do not follow from others."""
         return independent(row.line(self.table.q) for row in self.table.rows)
 
-    def run(self, kind: str, end: float) -> Run:
+    def run(self, kind: str, end: float) -> SlipSeries:
         """Return the steps to a time, or to the end of the slip.
 
         Raises
@@ -96,7 +99,7 @@ class TurningSlip(Motion):
         BudgetExceeded
             For more steps than one phase may take.
         """
-        found = self._runs.setdefault(kind, Run([ZERO], [], self.table))
+        found = self._runs.setdefault(kind, SlipSeries([ZERO], [], self.table))
         order, tolerance = _KINDS[kind]
         with precision(_BITS):
             while found.ended is None and found.starts[-1] < end:
@@ -107,7 +110,7 @@ class TurningSlip(Motion):
                 self._step(found, order, tolerance)
         return found
 
-    def _step(self, run: Run, order: int, tolerance: float) -> None:
+    def _step(self, run: SlipSeries, order: int, tolerance: float) -> None:
         # Rows that follow from others at the start do so for good; on a state with its error they may not.
         motion = expansion(run.table, order, self.chosen)
         run.steps.append(motion)

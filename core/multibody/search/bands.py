@@ -17,7 +17,8 @@ Quantity = Callable[[Pieces], Curve]
 SAFETY_FACTOR = 16.0
 """The difference of two computations, times this, is what a state is taken to be wrong by."""
 FLOOR = 2.0**-96
-"""Share of its terms that a quantity is wrong by at least: a thousand roundings of pairs."""
+"""Share of its terms, or of the largest coordinate of its unit, that a quantity or a state is wrong by at least, unless
+it is exact: a thousand roundings of pairs."""
 _LEFT_OUT = 2.0
 """Sum of what is left out, as a multiple of the last coefficients: they fall by two or more."""
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from core.multibody.algebra.bernstein import FALLING, OPEN, RISING, UNDECIDED, zero_between
 from core.multibody.search.bands import Quantity
 from core.multibody.search.batch import segments
-from core.multibody.search.followed import Followed, Found, Interval, Watch
+from core.multibody.search.followed import Followed, Found, Interval, WatchedSign
 from core.multibody.search.pieces import Expanded
 
 
@@ -75,7 +75,7 @@ class EveryZero:
         self._motion.leave(one, length, open_from)
         return sorted(found, key=lambda zero: (abs(zero.time), self._motion.way * zero.rest))
 
-    def _scanned(self, one: Interval, watch: Watch, until: float, known: float) -> Iterator[Found]:
+    def _scanned(self, one: Interval, watch: WatchedSign, until: float, known: float) -> Iterator[Found]:
         """Yield the zeros of a quantity in the first part of an interval, up to which its signs are known."""
         assert one.batch is not None
         own, length = one.batch.of[watch.index], float(one.batch.lengths[one.number])
@@ -119,7 +119,7 @@ class EveryZero:
                 self._signs[watch.index] = after
             start = end
 
-    def _within(self, watch: Watch, since: float, until: float) -> Found:
+    def _within(self, watch: WatchedSign, since: float, until: float) -> Found:
         """Return a zero that lies between two times, if there is one."""
         middle = 0.5 * (since + until)
         return Found(watch.index, self._motion.way * middle, 0.0, max(0.5 * (until - since), 2.0**-52 * middle))

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from core.multibody.algebra.bernstein import FALLING, NEGATIVE, OPEN, POSITIVE, RISING, UNDECIDED, zero_between
 from core.multibody.search.bands import Quantity
 from core.multibody.search.batch import segments
-from core.multibody.search.followed import Followed, Found, Interval, Watch
+from core.multibody.search.followed import Followed, Found, Interval, WatchedSign
 from core.multibody.search.pieces import Expanded
 
 _BELOW = (FALLING, NEGATIVE)
@@ -96,7 +96,7 @@ class FirstZero:
         self._motion.leave(one, length, open_from)
         return None
 
-    def _scanned(self, one: Interval, watch: Watch, until: float) -> Found | None:
+    def _scanned(self, one: Interval, watch: WatchedSign, until: float) -> Found | None:
         """Return where a quantity falls below zero in the first part of an interval, or comes too near."""
         assert one.batch is not None
         own, length = one.batch.of[watch.index], float(one.batch.lengths[one.number])

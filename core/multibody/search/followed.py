@@ -68,7 +68,7 @@ class Interval:
 
 
 @dataclass
-class Watch:
+class WatchedSign:
     """A quantity, and what is known of it so far.
 
     Attributes
@@ -124,7 +124,7 @@ class Followed:
         every: bool = False,
     ) -> None:
         self.motions, self.way, self.coarse, self.every = motions, way, coarse, every
-        self.watched = [Watch(*both, i) for i, both in enumerate(zip(quantities, jumps, strict=True))]
+        self.watched = [WatchedSign(*both, i) for i, both in enumerate(zip(quantities, jumps, strict=True))]
         self._left: list[Interval] = []
         self._reached = 0.0
         self._last = 0.0
@@ -220,7 +220,7 @@ class Followed:
         self.watched = remaining
         return Batch(lengths, pieces[0].natural, usual_length(pieces[0].natural, lengths), plain, of)
 
-    def _divided(self, watch: Watch, values: Floats, rounded: Floats, band: Floats) -> tuple[Floats, Floats, int]:
+    def _divided(self, watch: WatchedSign, values: Floats, rounded: Floats, band: Floats) -> tuple[Floats, Floats, int]:
         """Return the only piece of a quantity at time zero, with what is zero there but for rounding divided out.
 
         How far two computations are apart does not matter for that: each of them has the event that begins there. The
@@ -256,7 +256,7 @@ class Followed:
             if start < end:
                 self._left.append(Interval(start, end - start))
 
-    def at(self, start: float, length: float, watch: Watch, share: float, tail: float) -> Found:
+    def at(self, start: float, length: float, watch: WatchedSign, share: float, tail: float) -> Found:
         """Return a zero at a share of a piece."""
         moved = share * length
         time = start + moved

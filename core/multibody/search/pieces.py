@@ -21,8 +21,8 @@ from core.multibody.search.curves import Curve, differentiate
 from core.multibody.search.taylor import ORDER, expand
 from core.multibody.table.connection_effects import Force
 
-_PAST = 1.0 + 2.0**-20
-"""A period and a millionth of it, so that a zero at its end is within."""
+PAST_A_PERIOD = 1.0 + 2.0**-20
+"""A period and a millionth of it, so that a zero at its end, and what touches a value there, are within."""
 
 COEFFICIENTS = ORDER - 1
 """Of every curve: multipliers have two powers less than coordinates."""
@@ -251,7 +251,7 @@ def repeats_after(whole: Whole, coordinates: Sequence[int] | None = None) -> flo
     moving = [motion for motion in among if motion.moves]
     if len(moving) != 1 or moving[0].period is None or moving[0].winds_on:
         return None
-    return _PAST * float(moving[0].period)
+    return PAST_A_PERIOD * float(moving[0].period)
 
 
 def _covering(reach: Sequence[float] | Floats, time: int) -> Integers:

@@ -6,7 +6,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import perpendicular
 from core.multibody.algebra.polynomials import ONE, constant, difference, evaluated
 from core.multibody.language.connection import TwoEnded
-from core.multibody.language.joints import BallJoint, Pin, Rod, Slider, Track, Weld
+from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.written import GROUND
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
@@ -85,7 +85,7 @@ def weld(connection: Weld, measures: Measures, name: str, path: Path) -> None:
 
 
 @add_rows.register
-def track(connection: Track, measures: Measures, name: str, path: Path) -> None:
+def track(connection: GuideCurve, measures: Measures, name: str, path: Path) -> None:
     """Hold a place on a curve or surface."""
     measures.on_curve(name, measures.coordinates.point(connection.place, (*path, "place")), connection.on, path)
 

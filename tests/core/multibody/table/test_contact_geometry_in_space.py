@@ -307,3 +307,17 @@ def test_redundant_legs_stay_redundant_while_the_friction_of_another_turns() -> 
     for name in ("table.position", "m.position", "m.velocity"):
         first, second = (column(answer, name) for answer in answers)
         assert np.max(np.abs(np.asarray(first.values) - np.asarray(second.values))) <= first.error + second.error
+
+
+def test_bounces_whose_friction_turns_are_not_summed_up_as_if_it_did_not() -> None:
+    """A particle that gravity pulls across its way, against the sum over its bounces: mu (1 + e) w at each."""
+    floor = {"kind": "contact", "place": "m", "on": FLOOR, "restitution": 0.5, "friction": 0.1}
+    body = {"mass": 1, "at": [0, 0, 0], "velocity": [0.5, 1, 1]}
+    until = 4 / G * (1 - 1e-6)
+    rate, now, opening = np.array([0.5, 1.0]), 0.0, 1.0
+    while now + 2 * opening / G < until:
+        rate, now = rate + np.array([3 * 2 * opening / G, 0]), now + 2 * opening / G
+        rate, opening = rate * (1 - 0.1 * 1.5 * opening / np.hypot(*rate)), 0.5 * opening
+    scene = {"gravity": [3, 0, -G], "bodies": {"m": body}, "connections": [floor]}
+    found = column(solve_scene(read(scene), [until, 4 / G + 1e-3], ("trajectory",)), "m.velocity")
+    assert np.abs(found.values[0, :2] - rate - [3 * (until - now), 0]).max() <= found.error + 1e-15
