@@ -47,9 +47,10 @@ $(ENV)/made: requirements-dev.lock | $(ENV)/bin/python
 	@$(PIP) -r requirements-dev.lock
 	@touch $@ $(ENV)/runs
 
-# Wheel, client package, site and the promises of the API, which later versions are held to.
+# Wheel, client packages, site and the promises of the API, which later versions are held to.
 release: openapi release-contract site
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir build/release . ./clients/python
+	cd clients/typescript && npm install --no-audit --no-fund && npm pack --ignore-scripts --pack-destination ../../build/release
 	git archive --output build/release/image-context.tar.gz HEAD Dockerfile requirements.lock core service examples
 
 release-contract: environment
@@ -174,9 +175,9 @@ attacks: kernels
 
 .PHONY: clients
 
-# Generated clients: they compile in strict mode, and read and write every example as it is.
+# Generated clients compile in strict mode and call every operation; those in TypeScript need npm and its registry.
 clients: kernels
-	$(BIN)/python -m pytest -q tests/clients/generated_clients.py
+	$(BIN)/python -m pytest -q tests/clients/generated_clients.py tests/clients/generated_typescript.py
 
 .PHONY: fuzz fuzz-loop schemathesis soak scheduling health calibration image dial studies mutants
 
