@@ -27,7 +27,7 @@ from core.multibody.audit.failure import ROUNDING, Failure, Ledger
 from core.multibody.audit.impacts import Impacts
 from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
-from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, moved
+from core.multibody.audit.placement import Numbers, Placement, Pose, Twist, moved
 from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
 from core.multibody.audit.searches import SearchedQuantities
@@ -63,15 +63,17 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
         description = description_of(scene)
         if not description.moderate or answer.phases == ():
             return None
-        return _Audit(description, answer, times).worst(sampler)
+        found = _Audit(description, answer, times).worst(sampler, Ledger(ROUNDING))
+        if found is not None and _was_rounded(description, answer):
+            found = _Audit(description, answer, times).worst(sampler, Ledger(MEANT))
+        return found
 
 
 class _Audit:
     """One audit, with what its laws share.
 
     All samples are rows of one set: that of the start, those of windows, of the period and of impacts, those of the
-    answer. Behind them come the start that the accelerations lead to, a short time before and after, and that of the
-    description.
+    answer. Behind them come the start that the accelerations lead to, a short time before and after.
     """
 
     def __init__(self, description: Description, answer: SceneSolution, times: Numbers) -> None:
@@ -88,7 +90,7 @@ class _Audit:
         # A method that a client names computes samples of its own.
         self.own = found is None or found.method == CLOSED_FORM
 
-    def worst(self, sampler: Sampler) -> Failure | None:
+    def worst(self, sampler: Sampler, ledger: Ledger) -> Failure | None:
         """Compare everything, and return the worst failure."""
         description, answer = self.description, self.answer
         asked = self._asked(sampler)
@@ -98,34 +100,33 @@ class _Audit:
         samples = samples_of(description, parts)
         spun = _spun(description, samples)
         gains = None if asked is None or not spun else accelerations_of(description, answer)
-        after = None if gains is None else AfterStart(description, gains, samples.at(slice(0, 1)))
-        behind = [] if after is None else [after.samples()]
-        every = joined([(samples.placement, samples.motion), *behind, _described(description)])
-        ahead = moved(*every)
+        start = samples.at(slice(0, 1))
+        after = None if gains is None else AfterStart(description, gains, start)
+        own = (samples.placement, samples.motion)
+        ahead = moved(*(own if after is None else joined([own, after.samples()])))
         measures = measured(description, ahead)
-        ledger = Ledger(MEANT if _was_rounded(description, answer, measures) else ROUNDING)
         states = states_of(description, answer, samples.times)
         sizes = Sizes(description, samples)
         check_samples(ledger, measures, samples, states, sizes)
         if self.own_rows is not None:
-            behind_asked = slice(0 if asked is None else len(asked.part.times), None)
-            check_totals(ledger, description, samples.at(behind_asked), self.own_rows)
+            check_totals(ledger, description, samples, self.own_rows)
         check_equilibria(ledger, description, answer, self.random)
         if asked is not None:
-            self._check_motion(ledger, samples, ahead, after, measures, asked, sizes)
+            self._check_motion(ledger, samples, start, ahead, after, measures, asked, sizes)
             if spun:
                 self._check_energy(ledger, samples)
             if asked.searches is not None:
                 found = answer.trajectory
-                own = (np.zeros(0), {}) if found is None else (found.time, found.columns)
+                answered = (np.zeros(0), {}) if found is None else (found.time, found.columns)
                 sought = with_totals(description, asked.whole, asked.searches.names, ledger.rounding)
-                asked.searches.check(ledger, sought, *own)
+                asked.searches.check(ledger, sought, *answered)
         return ledger.worst
 
     def _check_motion(
         self,
         ledger: Ledger,
         samples: Samples,
+        start: Samples,
         ahead: Placement,
         after: AfterStart | None,
         measures: Sequence[MeasureValues],
@@ -134,7 +135,6 @@ class _Audit:
     ) -> None:
         """Compare what needs the start or windows of the motion."""
         description, answer, freedoms = self.description, self.answer, Freedoms(self.description)
-        start = samples.at(slice(0, 1))
         check_places(ledger, description, start)
         if after is not None:
             after.check(ledger, measures, len(samples.times))
@@ -295,35 +295,17 @@ def _rows(placement: Placement, rows: slice) -> Placement:
     }
 
 
-def _described(description: Description) -> tuple[Placement, Motion]:
-    """Return the start of a description as one sample, at rest."""
-    placement, motion = {}, {}
-    for name, body in description.bodies.items():
-        at = body.start
-        placement[name] = Pose(*(None if x is None else x[None] for x in (at.position, at.rotation, at.turn, at.time)))  # type: ignore[arg-type]
-        still = np.zeros((1, description.dimension))
-        spin = np.zeros((1, 3) if description.dimension == 3 else 1)
-        motion[name] = Twist(still, None if body.inertia is None else spin)
-    return placement, motion
-
-
-def _was_rounded(description: Description, answer: SceneSolution, measures: Sequence[MeasureValues]) -> bool:
-    """Return whether positions or velocities were taken as rounded, and moved so that connections hold.
-
-    Parameters
-    ----------
-    measures : sequence of MeasureValues
-        Of which the last sample is the start as it is described.
-    """
+def _was_rounded(description: Description, answer: SceneSolution) -> bool:
+    """Return whether positions or velocities were taken as rounded, and moved so that connections hold."""
     if any("rounding" in sentence or "rounded" in sentence for sentence in answer.model.noticed):
         return True
     for pose in description.start.values() if description.dimension == 3 else ():
         axes = pose.rotation
         if axes is not None and np.abs(axes.T @ axes - np.eye(3)).max() > ROUNDING:
             return True
-    for own in measures:
-        known = ROUNDING * (description.places + own.connection.arm + own.connection.reach)
-        if any(np.abs(value[-1].real).max() > known for value in own.held.values()):
+    for connection in description.connections:
+        known = ROUNDING * (description.places + connection.arm + connection.reach)
+        if any(np.abs(value).max() > known for value in connection.held(description.start).values()):
             return True
     return False
 

@@ -28,9 +28,11 @@ def check_totals(ledger: Ledger, description: Description, samples: Samples, own
     Parameters
     ----------
     samples : Samples
-        Of the rows `own` of the columns of the answer.
+        Of which the last are those of the rows `own` of the columns of the answer.
     """
-    for name, total in _totals(description, samples, own.columns).items():
+    totals = _totals(description, samples, own.columns)
+    samples = samples.at(slice(len(samples.times) - len(own.times), None)) if totals else samples
+    for name, total in totals.items():
         column = own.columns[name]
         found, size = total(samples), _size(description, samples, name)
         off, allowed = _largest(found - own.values(name)), ledger.rounding * size + column.error
