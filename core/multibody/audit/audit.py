@@ -31,7 +31,7 @@ from core.multibody.audit.placement import Numbers, Placement, Pose, Twist, move
 from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
 from core.multibody.audit.searches import SearchedQuantities
-from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of
+from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of, unsure_of
 from core.multibody.audit.totals import check_totals, with_totals
 from core.multibody.audit.windows import NODES, check_windows, nodes
 from core.multibody.language.scene import Scene
@@ -172,7 +172,8 @@ class _Audit:
         if not begins and not asked.halves:
             return
         some = samples.at(rows)
-        accelerations, unsure = {} if after is None else dict(after.gains), np.zeros((freedoms.count, int(begins)))
+        accelerations = {} if after is None else dict(after.gains)
+        unsure = unsure_of(description, self.answer, freedoms)[:, : int(begins)]
         if asked.halves:
             inner = samples.at(slice(1, last))
             found = check_windows(

@@ -12,7 +12,7 @@ from core.multibody.audit.chosen_times import quickness
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import Ledger
 from core.multibody.audit.laws_at_samples import MeasureValues
-from core.multibody.audit.newton import Acceleration
+from core.multibody.audit.newton import Acceleration, Freedoms
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, cross, turned
 from core.multibody.audit.samples import ATTITUDE, POSITION, Samples, axis_of_top
 
@@ -67,6 +67,19 @@ def accelerations_of(description: Description, answer: SceneSolution) -> dict[st
                 angular = angular @ body.start.rotation.T
         found[name] = Acceleration(np.array(one.linear)[None], angular)
     return found
+
+
+def unsure_of(description: Description, answer: SceneSolution, freedoms: Freedoms) -> Numbers:
+    """Return what the stated errors of the accelerations at the start do to the equations, shape (freedoms, 1)."""
+    unsure = np.zeros((freedoms.count, 1))
+    for name, one in (answer.accelerations or {}).items():
+        body = description.bodies[name]
+        if one.errors is None:
+            continue
+        unsure[freedoms.moving(name)] = body.mass * (one.errors.linear or 0.0)
+        if body.inertia is not None:
+            unsure[freedoms.turning(name)] = body.moment * (one.errors.angular or 0.0)
+    return unsure
 
 
 def forces_of(answer: SceneSolution) -> dict[str, Numbers]:

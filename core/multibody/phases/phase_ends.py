@@ -172,9 +172,12 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
         if hit is not None or singular is not None or reach >= last:
             break
         reach = min(last, 2.0 * reach)
+    if singular is not None and (hit is None or hit[1].time > float(singular.time) * BEFORE_SINGULAR):
+        # What is found beyond the end of a search is the singular place itself.
+        if hit is not None and watched[hit[0]].what == "length":
+            singular.name = watched[hit[0]].one.name
+        raise singular
     if hit is None:
-        if singular is not None:
-            raise singular
         return []
     number, one = hit
     watch = watched[number]

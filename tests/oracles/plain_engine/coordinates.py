@@ -6,13 +6,14 @@ Rates are velocities of centres of mass and angular velocities, in space in the 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from core.multibody.audit.bodies import Reader
-from core.multibody.audit.placement import Placement, Pose, Twist, cross, turned
+from core.multibody.audit.placement import STEP, Placement, Pose, Twist, cross, turned
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ class State:
     position: Floats
     turn: Floats
     rates: Floats
-    time: float = 0.0
+    time: Any = 0.0
 
 
 class Coordinates:
@@ -70,7 +71,7 @@ class Coordinates:
 
     def spread(self, rates: Floats) -> tuple[Floats, Floats]:
         """Return velocities (..., b, d) and spins (..., b) or (..., b, 3) of rates (..., n)."""
-        full = np.zeros((*rates.shape[:-1], *self.alive.shape))
+        full = np.zeros((*rates.shape[:-1], *self.alive.shape), dtype=rates.dtype)
         full[..., self.alive] = rates
         spins = full[..., self.dimension :]
         return full[..., : self.dimension], spins[..., 0] if self.flat else spins
@@ -96,11 +97,20 @@ class Coordinates:
             for i, (name, rigid) in enumerate(zip(self.names, self.rigid, strict=True))
         }
 
-    def advanced(self, state: State, change: Floats) -> State:
-        """Return the state with its places moved by changes, of shape (..., n)."""
+    def moving(self, state: State, rates: Floats) -> Placement:
+        """Return the places by body, moved by an imaginary step along rates, of shape (..., n)."""
+        velocity, spin = self.spread(1j * STEP * rates)
+        if self.flat:
+            turn = state.turn + spin
+        else:
+            turn = state.turn + np.swapaxes(cross(spin[..., None, :], np.swapaxes(state.turn, -1, -2)), -1, -2)
+        return self.placement(State(state.position + velocity, turn, rates, state.time + 1j * STEP))
+
+    def advanced(self, state: State, change: Floats, later: Floats | float = 0.0) -> State:
+        """Return the state with its places moved by changes, of shape (..., n), and so much later."""
         move, angle = self.spread(change)
         turn = state.turn + angle if self.flat else rotations_by(angle) @ state.turn
-        return State(state.position + move, turn, state.rates, state.time)
+        return State(state.position + move, turn, state.rates, state.time + later)
 
     def inertia(self, state: State) -> Floats:
         """Return the mass matrix, shape (n, n)."""

@@ -17,7 +17,7 @@ from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.laws import Pull
-from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, moved, rate, with_rate
+from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, rate, with_rate
 from core.multibody.audit.strings import ChainDefinition, Straight, StringDefinition
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 
@@ -127,6 +127,8 @@ class Mechanism:
         placement = self.coordinates.placement(self.coordinates.start())
         still = self.coordinates.motion(np.zeros(self.coordinates.size))
         self.one_sided = [entry for one in self.definitions for entry in _one_sided(one, placement, still, reader)]
+        self.rolling = [(k, one) for k, one in enumerate(self.definitions) if one.rolls]
+        self.pushing = [one for one in self.definitions if one.lawful or one.loads]
         self.chains = [one for one in self.definitions if isinstance(one, ChainDefinition)]
         self.straights = [
             (run.name, part, len(run.parts) > 1 or run.parts[0].senses != (0, 0))
@@ -143,25 +145,23 @@ class Mechanism:
         if self.spent > MOST_SPENT:
             raise NotSupported("more evaluations than one motion may take")
 
-    def rows(self, state: State, closed: Iterable[int] = (), slipping: Iterable[int] = ()) -> Rows:
+    def rows(self, state: State, closed: Iterable[int] = (), slipping: Sequence[int] = ()) -> Rows:
         """Return the rows of everything that holds, of gaps that are closed, and of slips that are wanted."""
         coordinates, u, n = self.coordinates, state.rates, self.coordinates.size
         fastest = float(np.abs(u).max(initial=0.0))
         h = REACH * self._shortest(state) / fastest if fastest > 0.0 else 1.0
-        motions = np.concatenate([np.eye(n), np.zeros((1, n)), np.tile(u, (9, 1))])
+        motions = np.concatenate([np.eye(n + 1, n), np.broadcast_to(u, (9, n))])
         times = np.concatenate([np.zeros(n + 2), h * _STENCIL])
-        motion = coordinates.motion(motions)
-        placement = coordinates.placement(coordinates.advanced(state, times[:, None] * motions))
-        moving = moved(placement, motion)
+        there = coordinates.advanced(state, times[:, None] * motions, times)
+        moving = coordinates.moving(there, motions)
         one_sided = self.one_sided
         found = [(("held", k), x) for k, one in enumerate(self.definitions) for x in one.held(moving).values()]
         found += [(("push", i), one_sided[i].definition.gaps(moving)[one_sided[i].key]) for i in closed]
         owners, held = _columns(found, n + 10)
-        found = [
-            (("held", k), x)
-            for k, one in enumerate(self.definitions)
-            for x in one.held_rates(placement, motion).values()
-        ]
+        found = []
+        if slipping or self.rolling:
+            motion, placement = coordinates.motion(motions), coordinates.placement(there)
+            found = [(("held", k), x) for k, one in self.rolling for x in one.held_rates(placement, motion).values()]
         found += [(("slip", i), one_sided[i].definition.slips(placement, motion)[one_sided[i].key]) for i in slipping]
         others, turned = _columns(found, n + 10)
         rates = np.concatenate([held.imag / STEP, turned.real], axis=1)
@@ -187,16 +187,17 @@ class Mechanism:
 
     def _shortest(self, state: State) -> float:
         """Return the length (m) of the shortest rod or straight part, whose direction turns most for a move."""
-        placement = self.coordinates.placement(state)
+        placement = self.coordinates.placement(state) if self.straights else {}
         return max(min([self.shortest_rod, *(float(_span(part, placement)) for _, part, _ in self.straights)]), 1e-6)
 
     def loads(self, state: State) -> Floats:
         """Return the forces that places and rates alone give, shape (n,)."""
         coordinates = self.coordinates
-        placement, motion = coordinates.placement(state), coordinates.motion(state.rates)
-        virtual = coordinates.motion(np.eye(coordinates.size))
         total = coordinates.weights(state, self.gravity)
-        for one in self.definitions:
+        if self.pushing:
+            placement, motion = coordinates.placement(state), coordinates.motion(state.rates)
+            virtual = coordinates.motion(np.eye(coordinates.size))
+        for one in self.pushing:
             values = one.laws(placement, motion)
             efforts = one.efforts(placement, virtual) if values else {}
             for name, value in values.items():
@@ -225,8 +226,7 @@ class Mechanism:
 
     def gap_rates(self, state: State) -> tuple[Floats, Floats]:
         """Return all gaps and their rates, shape (k,) each."""
-        coordinates = self.coordinates
-        moving = moved(coordinates.placement(state), coordinates.motion(state.rates))
+        moving = self.coordinates.moving(state, state.rates)
         gaps = np.array([one.definition.gaps(moving)[one.key] for one in self.one_sided], dtype=complex)
         return gaps.real, gaps.imag / STEP
 

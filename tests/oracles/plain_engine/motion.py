@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -182,6 +183,25 @@ class _Run:
             self.motion.states[self.now] = self.state
             self.motion.forces[self.now] = forces_of(phase, self.state)
 
+    def _figures(self, phase: Phase, state: State, kind: str | None = None) -> dict[Key, float]:
+        """Return what has to stay at or above zero, all or that of one kind alone."""
+        mechanism, found = self.mechanism, dict[Key, float]()
+        opened = [i for i in range(len(mechanism.one_sided)) if i not in phase.closed]
+        if kind in (None, "gap") and opened:
+            gaps, _ = mechanism.gap_rates(state)
+            found |= {("gap", i): float(gaps[i]) for i in opened}
+        if kind in (None, "rank"):
+            found["rank", -1] = phase.independence(state)
+        if kind in (None, "span"):
+            slack = {mechanism.one_sided[i].name for i in opened}
+            spans = enumerate(mechanism.spans(state))
+            found |= {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
+        if kind not in ("gap", "rank", "span"):
+            # Where connections lose their rank there may be no forces.
+            with suppress(Inconsistent):
+                found |= of_chains(phase, state) | self._forced(phase, state)
+        return found
+
     def _forced(self, phase: Phase, state: State) -> dict[Key, float]:
         if not phase.closed:
             return {}
@@ -191,20 +211,7 @@ class _Run:
 
     def _advance(self, phase: Phase, end: float) -> bool:
         """Go to the next event; return whether there is one."""
-
-        def figures(state: State) -> dict[Key, float]:
-            """Return what has to stay at or above zero."""
-            gaps, _ = self.mechanism.gap_rates(state)
-            opened = {i for i in range(len(gaps)) if i not in phase.closed}
-            found = {("gap", i): float(gaps[i]) for i in opened} | of_chains(phase, state)
-            found["rank", -1] = phase.independence(state)
-            # Where connections lose their rank there may be no forces.
-            with suppress(Inconsistent):
-                found |= self._forced(phase, state)
-            slack = {self.mechanism.one_sided[i].name for i in opened}
-            spans = enumerate(self.mechanism.spans(state))
-            return found | {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
-
+        figures = partial(self._figures, phase)
         stepper = Stepper(phase, self.tolerance)
         for found in stepper.until(self.state, self.now, end, figures, self.times, self._first(phase)):
             if not isinstance(found, Crossing):

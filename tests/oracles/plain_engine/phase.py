@@ -100,14 +100,18 @@ class Phase:
         # In space what slides turns the direction of its friction with it; from rest it begins along this one.
         self.along = {i: np.array(modes[i].along) for i in self.sliding}
         self.rank: int | None = None
+        self.last: tuple[State, Rows] | None = None
 
     def rows(self, state: State) -> Rows:
         """Return the rows of what holds, of what is closed, and of all slips."""
-        return self.mechanism.rows(state, self.closed, [*self.sticking, *self.sliding])
+        if self.last is None or self.last[0] is not state:
+            self.last = state, self.mechanism.rows(state, self.closed, [*self.sticking, *self.sliding])
+        return self.last[1]
 
     def independence(self, state: State) -> float:
         """Return the product of the squared singular values of what holds; it is zero where that loses its rank."""
-        lines = self.mechanism.rows(state, self.closed).lines
+        rows = self.rows(state)
+        lines = rows.lines[[what != "slip" for what, _ in rows.owners]]
         values = np.linalg.svd(lines / sizes_of(lines)[:, None], compute_uv=False)
         self.rank = int((values > NO_ROW).sum()) if self.rank is None else self.rank
         return float(np.prod(values[: self.rank] ** 2))

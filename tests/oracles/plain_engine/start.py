@@ -28,7 +28,6 @@ def projected(mechanism: Mechanism, state: State, closed: Sequence[int], stickin
         state = mechanism.coordinates.advanced(state, step)
         if float(np.abs(step).max(initial=0.0)) < 1e-14 * max(1.0, float(np.abs(state.position).max())):
             break
-    rows = mechanism.rows(state, closed, sticking)
     return replace(state, rates=state.rates + _least(rows.lines, -rows.rates))
 
 

@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 
 import numpy as np
 from scipy.integrate import DOP853
@@ -22,7 +23,7 @@ from tests.oracles.plain_engine.mechanism import NotSupported
 from tests.oracles.plain_engine.phase import Inconsistent, Key, Phase
 from tests.oracles.plain_engine.start import projected
 
-INSIDE = (0.0625, 0.25, 0.5, 0.75, 1.0)
+INSIDE = (0.125, 0.5, 1.0)
 """Parts of a step at which figures are seen."""
 FIRST = (1e-4, 1e-3, 1e-2, *INSIDE)
 """The same of the first step after an event, from which something may turn back soon."""
@@ -30,13 +31,17 @@ NOTHING = {"gap": 1e-13, "slip": 1e-11, "span": 1e-9}
 """Figure below which nothing has been crossed: gaps and lengths in m, slips relative to the rates. Forces and shares,
 relative to those of the scene, are known to some 1e-12."""
 NO_FORCE = 1e-10
+ENOUGH = 60
+"""Steps of a short motion after which it is at a singular place."""
+HALF = 0.5
+"""Share of the least value seen above which the vertex of a parabola has to be for a figure to stay clear of zero."""
 GRAZES = 1e-9
 """Share of a gap's own size to which it is known whether it reaches zero where it turns back."""
 TOUCHES = {"gap": GRAZES, "rank": 1e-12}
 """The same of what ends a motion there; a product of squares is zero to the square of what places are known to."""
 
-Figures = Callable[[State], dict[Key, float]]
-"""What has to stay at or above zero, by kind and number."""
+Figures = Callable[..., dict[Key, float]]
+"""What has to stay at or above zero in a state, by kind and number: all, or that of one kind."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +89,9 @@ class Stepper:
         return projected(self.mechanism, state, self.phase.closed, sticking=self.phase.sticking)
 
     def to(self, state: State, start: float, end: float) -> State:
-        """Return the state at a later time, without any watch."""
-        last = deque(self._steps(state, start, end, end - start), maxlen=1) if end > start else ()
+        """Return the state at a later time, or where steps become too small on the way, without any watch."""
+        steps = self._steps(state, start, end, end - start) if end > start else ()
+        last = deque(islice(steps, ENOUGH), maxlen=1)
         return last[0][1] if last else state
 
     def _steps(self, state: State, start: float, end: float, first: float | None) -> Iterator[tuple[DOP853, State]]:
@@ -136,7 +142,9 @@ class Stepper:
     ) -> Crossing | None:
         losses = []
         for key in curves[0]:
-            loss = _first_loss(lambda t, key=key: figures(seen(t))[key], times, [x[key] for x in curves], key[0])  # type: ignore[misc]
+            loss = _first_loss(
+                lambda t, key=key: figures(seen(t), key[0])[key], times, [x[key] for x in curves], key[0]
+            )  # type: ignore[misc]
             losses += [] if loss is None else [(*loss, key)]
         if not losses:
             return None
@@ -147,9 +155,10 @@ class Stepper:
         earlier = max(time - 1e-4 * solver.step_size, begun + 0.5 * (time - begun))
         if time > earlier:
             # The zero of states that are reached in steps, and not by interpolation.
-            slope = (figures(seen(time))[key] - figures(seen(earlier))[key]) / (time - earlier)
+            then, before = (figures(seen(t), key[0])[key] for t in (time, earlier))
+            slope = (then - before) / (time - earlier)
             for _ in range(2 if slope < 0.0 else 0):
-                change = figures(self.to(origin, begun, time))[key] / slope
+                change = figures(self.to(origin, begun, time), key[0])[key] / slope
                 time -= change if abs(change) <= 0.05 * solver.step_size else 0.0
         return Crossing(key, max(time, begun), self.to(origin, begun, max(time, begun)))
 
@@ -170,7 +179,7 @@ def _first_loss(
                 return float(brentq(figure, times[k - 1], times[k], xtol=1e-15)), False
             return _from_zero(figure, times[k - 1], times[k]), False
         if k + 1 < len(times) and nothing < values[k] < values[k - 1] and values[k] <= values[k + 1]:
-            if kind != "rank" and _parabola(times[k - 1 : k + 2], values[k - 1 : k + 2]) > 0.3 * values[k]:
+            if _parabola(times[k - 1 : k + 2], values[k - 1 : k + 2]) > HALF * values[k]:
                 continue
             a, c = times[k - 1], times[k + 1]
             found = minimize_scalar(figure, bounds=(a, c), method="bounded", options={"xatol": 1e-9 * (c - a)})

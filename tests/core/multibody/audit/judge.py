@@ -22,12 +22,16 @@ import core.multibody.solve as solving
 from core.errors import MechanicsError, SelfCheckFailed
 from core.multibody.language.reading import scene_from
 from tests.core.multibody import contact_judge, random_scenes
+from tests.core.multibody.random_laws import with_law
+from tests.core.multibody.relations import combined_scenes
 
 OUTPUTS = ("accelerations", "forces", "energy", "trajectory")
 SOURCES: tuple[Callable[[int], dict[str, Any]], ...] = (
     random_scenes.any_scene,
     random_scenes.attracted_or_rolling,
     contact_judge.any_scene,
+    combined_scenes.plane,
+    combined_scenes.space,
 )
 
 
@@ -51,7 +55,7 @@ def main(count: int, first: int = 0) -> None:
         solving.audited = timed
         begin = thread_time()
         try:
-            solving.solve_scene(scene_from(source(seed)), times, OUTPUTS, 1e-6)
+            solving.solve_scene(scene_from(with_law(source(seed), number)), times, OUTPUTS, 1e-6)
             found["passed"] += 1
             shares.append(spent / max(thread_time() - begin - spent, 1e-9))
         except SelfCheckFailed as failure:

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from mpmath import acos, cos, ellipf, ellipk, linspace, mp, mpf, quad, sqrt
+from scipy.integrate import solve_ivp
 
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import kinds
@@ -212,3 +213,45 @@ def test_weights_that_attract_one_another_meet_their_drum(floor: list[Any]) -> N
     ]
     answer = solve_scene(read({"gravity": [0, -10], "bodies": bodies, "connections": connections}), [2.0])
     assert kinds(answer)[-1][0] == "singular"
+
+
+def test_a_weight_that_reaches_its_peg_after_a_jerk_ends_the_motion_there() -> None:
+    """A weight on a string over two pegs, and on the other side one that a spring pulls away: slack, taut, singular."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"a": {"mass": 1, "at": [-0.1, -1]}, "b": {"mass": 1, "at": [0.1, -0.6]}},
+        "connections": [
+            {"kind": "string", "name": "cord", "through": ["a", [-0.1, 0], [0.1, 0], "b"]},
+            {"kind": "spring", "a": "b", "b": [4.2, 0.6], "stiffness": 20, "rest_length": 0},
+        ],
+    }
+    peg, far, gravity = np.array([0.1, 0.0]), np.array([4.2, 0.6]), np.array([0.0, -9.81])
+
+    def apart(t: float, x: np.ndarray) -> np.ndarray:
+        return np.concatenate([x[2:], gravity + 20.0 * (far - x[:2])])
+
+    def slack(t: float, x: np.ndarray) -> float:
+        return float(0.6 - 4.905 * t * t - np.linalg.norm(x[:2] - peg))
+
+    def together(_: float, x: np.ndarray) -> np.ndarray:
+        """Return the rates of b, whose acceleration along the string is that of a, with the tension between them."""
+        along = (x[:2] - peg) / np.linalg.norm(x[:2] - peg)
+        push, across = gravity + 20.0 * (far - x[:2]), x[2:] - (x[2:] @ along) * along
+        bend = across @ across / np.linalg.norm(x[:2] - peg)
+        return np.concatenate([x[2:], push - 0.5 * (push @ along + bend + 9.81) * along])
+
+    def left(_: float, x: np.ndarray) -> float:
+        return float(1.6 - np.linalg.norm(x[:2] - peg))
+
+    exact = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
+    slack.terminal = left.terminal = True  # type: ignore[attr-defined]
+    slack.direction = -1.0  # type: ignore[attr-defined]
+    first = solve_ivp(apart, (0.0, 1.0), [0.1, -0.6, 0.0, 0.0], events=slack, **exact)
+    (taut,), (x,) = first.t_events[0], first.y_events[0]
+    along = (x[:2] - peg) / np.linalg.norm(x[:2] - peg)
+    # Equal masses share the speeds along the string: that of b outward, and that of a, which falls, the other way.
+    x[2:] -= 0.5 * (x[2:] @ along + 9.81 * taut) * along
+    then = solve_ivp(together, (taut, 1.0), x, events=left, **exact)
+    answer = solve_scene(read(scene), [0.5])
+    assert kinds(answer) == [("taut", "cord"), ("singular", "cord")]
+    assert [one.time for one in answer.events] == pytest.approx([taut, then.t_events[0][0]], abs=1e-8)

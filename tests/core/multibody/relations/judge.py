@@ -2,7 +2,7 @@
 
     python -m tests.core.multibody.relations.judge 20000
 
-tries one relation on each of so many random scenes, every relation on every scene of the catalogue, and all pairs of
+tries so many relations on random scenes, four on each, every relation on every scene of the catalogue, and all pairs of
 scenes of the catalogue side by side; the figures are written to benchmarks/results/relations.json.
 """
 
@@ -23,7 +23,13 @@ from typing import Any
 from tests.core.multibody.relations.comparison import Difference, differences
 from tests.core.multibody.relations.hard_scenes import hard_scenes
 from tests.core.multibody.relations.numbers import Json
-from tests.core.multibody.relations.relations import NAMES, RELATIONS, answered, checked, checked_by_digits
+from tests.core.multibody.relations.relations import (
+    NAMES,
+    RELATIONS,
+    answered,
+    checked,
+    checked_by_digits,
+)
 from tests.core.multibody.relations.sources import catalogue, random_scene, side_by_side
 from tests.core.multibody.relations.views import Refusal, View, viewed
 
@@ -31,6 +37,8 @@ TARGET = Path(__file__).parents[4] / "benchmarks" / "results" / "relations.json"
 SHOWN = 8
 """Scenes that are named for every kind of difference."""
 
+EACH = 4
+"""Relations that are tried on each random scene."""
 LONGEST = 20
 """Processor time (s) after which a comparison is given up, and counted."""
 
@@ -59,11 +67,22 @@ Found = tuple[str, str, list[Difference] | None]
 
 
 def of_random_scenes(first: int, count: int) -> Iterator[Found]:
-    """Yield the scene, the relation and the differences for a range of seeds; the relations take turns."""
-    for seed in range(first, first + count):
-        # Five sources take turns as well: consecutive rounds of them meet every relation.
-        relation = NAMES[(seed + seed // len(NAMES)) % len(NAMES)]
-        yield f"seed {seed}", relation, limited(checked, random_scene(seed), relation, seed)
+    """Yield the scene, the relation and the differences for a number of pairs; the relations take turns."""
+    for number in range(0, count, EACH):
+        seed = first + number // EACH
+        scene = random_scene(seed)
+        alone: list[View | Refusal] = []
+        for k in range(EACH):
+            # Five sources take turns as well: consecutive rounds of them meet every relation.
+            relation = NAMES[(EACH * seed + k + seed // len(NAMES)) % len(NAMES)]
+            yield f"seed {seed}", relation, limited(_of_random_scene, scene, relation, seed, alone)
+
+
+def _of_random_scene(scene: Json, relation: str, seed: int, alone: list[View | Refusal]) -> list[Difference] | None:
+    """Return the differences by a relation; what the scene is by itself is answered once for all of them."""
+    if not alone:
+        alone.append(viewed(partial(answered, scene)))
+    return checked(scene, relation, seed, *alone)
 
 
 def of_digits(first: int, count: int) -> Iterator[Found]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.core.multibody import contact_judge, random_scenes
+from tests.core.multibody.random_laws import with_law
 from tests.core.multibody.relations import combined_scenes
 from tests.core.multibody.relations.numbers import Json
 from tests.core.multibody.relations.writing import at
@@ -49,6 +50,11 @@ def without_search(request: Json) -> Json:
     return {name: value for name, value in request.items() if name != "searched"}
 
 
+def without_law(request: Json) -> Json:
+    """Return a request without the law by formula that was added to it."""
+    return {**request, "connections": [one for one in request.get("connections", ()) if one.get("name") != "formula"]}
+
+
 RANDOM: tuple[Callable[[int], Any], ...] = (
     combined_scenes.plane,
     combined_scenes.plane,
@@ -60,7 +66,7 @@ RANDOM: tuple[Callable[[int], Any], ...] = (
 
 def random_scene(seed: int) -> Json:
     """Return the request of a seed; the sources take turns."""
-    scene = RANDOM[seed % len(RANDOM)](seed // len(RANDOM))
+    scene = with_law(RANDOM[seed % len(RANDOM)](seed // len(RANDOM)), seed)
     return asked(json.loads(json.dumps(scene)))
 
 

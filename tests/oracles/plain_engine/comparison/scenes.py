@@ -8,6 +8,7 @@ from contextlib import suppress
 import numpy as np
 
 from core.multibody.language.reading import scene_from
+from tests.core.multibody.random_laws import SHARE, Laws
 from tests.oracles.plain_engine.comparison import units_in_plane, units_in_space, units_of_other_kinds
 from tests.oracles.plain_engine.comparison.drawing import Draw, Json, Unit
 from tests.oracles.plain_engine.mechanism import NotSupported
@@ -45,10 +46,11 @@ def scene_of(seed: int) -> tuple[Json, list[float]]:
     if draw.chance(0.06) and not any(one["kind"] == "chain" for one in scene["connections"]):
         frame = {"kind": "spinning-frame", "rate": draw.one((1, 2))}
         scene["connections"].append(frame if space else {**frame, "about": "normal"})
-    later = Draw(np.random.default_rng([2026, seed, 1]), "", 0.0)
+    later = np.random.default_rng([2026, seed, 1])
     places = [end for unit in units for end in unit.ends]
-    if places and later.chance(0.15):
-        scene["connections"].append(_by_formula(later, later.one(places), space=space))
+    if places and later.random() < SHARE:
+        turning = [name for name in scene["bodies"] if "inertia" in scene["bodies"][name] and not space]
+        scene["connections"].append(Laws(later, places, turning, 3 if space else 2).any_law())
     end = draw.one(ENDS)
     times = [0.0, round(end * 0.45, 4), end]
     return scene, _until_soon_after(scene, times) if draw.chance(0.2) else times
@@ -69,17 +71,10 @@ def _side_by_side(draw: Draw, kinds: Sequence[Callable[[Draw], Unit]]) -> list[U
 def _until_soon_after(scene: Json, times: list[float]) -> list[float]:
     """Return times of which the last is soon after the first event, if there is one."""
     with suppress(NotSupported):
-        for event in follow(scene_from(scene), times).events:
+        for event in follow(scene_from(scene), times, tolerance=1e-8).events:
             if event.time > 0.01:
                 return [0.0, round(event.time / 2, 6), round(event.time + 1e-3, 6)]
     return times
-
-
-def _by_formula(draw: Draw, place: str, *, space: bool) -> Json:
-    """Return a force by formula: drag in air or in oil, or what swings with time."""
-    swings = ["2*cos(3*t)", "sin(5*t)"] + (["-t"] if space else [])
-    laws = [[f"-0.2*speed*v{axis}" for axis in "xyz"[: len(swings)]], [f"-v{axis}/2" for axis in "xyz"[: len(swings)]]]
-    return {"kind": "force", "name": "formula", "place": place, "force": draw.one((*laws, swings))}
 
 
 def _tie(draw: Draw, units: list[Unit]) -> list[Json]:
