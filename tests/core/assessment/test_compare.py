@@ -155,6 +155,9 @@ def test_limits_decide_whatever_the_distance() -> None:
     assert compare(number(2.0), 3.1, Interval(1.0, 3.0)).verdict == "incorrect"
     # Limits that exclude what is right are the course's mistake, not the student's.
     assert compare(number(2.0), 2.5, Interval(2.1, 3.0)).verdict == "not-gradable"
+    # So are those that may exclude it, for all that is known.
+    for limits in (Interval(1.95, 3.0), Interval(1.0, 2.05)):
+        assert compare(number(2.0, inherited=0.1), 2.0, limits).verdict == "not-gradable"
 
 
 @pytest.mark.parametrize(

@@ -84,10 +84,11 @@ def test_below_zero_for_a_small_share_of_a_period_is_found(share: float) -> None
 
 def test_a_near_miss_is_no_zero_and_a_touch_undecided_from_both_sides() -> None:
     assert first(level("1.00000000000000000001")) is None
-    for touch in ("1", "1.00000000000000000000000000000000001", "0.99999999999999999999999999999999999"):
+    for touch in ("1", "1.00000000000000000000000000000000001", "0.99999999999999999999999999999"):
         found = first(level(touch))
         assert found is not None
-        assert abs(found.time - math.pi) <= found.width <= 1e-12
+        # Of what is deeper by less than is known, both zeros are within.
+        assert abs(mpf(found.time) - pi) + mp.sqrt(2 * max(0, 1 - mpf(touch))) <= found.width <= 1e-12
         # Where what follows is the same to within its error, nothing comes of it.
         assert first(level(touch), jumps=False) is None
 
