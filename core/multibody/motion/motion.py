@@ -18,7 +18,7 @@ from core.multibody.table.table import Table
 
 @dataclass(frozen=True)
 class States:
-    """Coordinates and rates of one part at many times, in SI units, as pairs of doubles.
+    """Coordinates and rates of one part, or of a scene as described, at many times, in SI units, as pairs of doubles.
 
     Attributes
     ----------

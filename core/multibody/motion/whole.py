@@ -18,7 +18,7 @@ from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
 from core.multibody.laws.samples import values_of
-from core.multibody.motion.motion import Motion
+from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.series_pairs import multipliers_pairs
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.table.connection_effects import Force
@@ -28,27 +28,6 @@ from core.multibody.table.table import Table
 _NO_TERM = 2.0**-96
 """Sum of the terms of a measure, relative to the largest coordinate, below which it is zero to pairs of doubles, whose
 roundings of 2^-106 a thousand operations gather: what is left of components that vanish."""
-
-
-@dataclass(frozen=True)
-class WholeStates:
-    """Every coordinate and rate of the table as described, in SI units.
-
-    Attributes
-    ----------
-    q, v : ndarray, shape (t, n, 2)
-        As pairs of doubles.
-    q_error, v_error : ndarray, shape (t, n)
-        Errors of the values, rounding to doubles apart.
-    reference : tuple of two ndarrays of shape (t, n, 2), or None
-        Coordinates and rates of the run in pairs against which these were measured.
-    """
-
-    q: Floats
-    v: Floats
-    q_error: Floats
-    v_error: Floats
-    reference: tuple[Floats, Floats] | None
 
 
 @dataclass(frozen=True)
@@ -160,7 +139,7 @@ class Whole:
         x, y = sorted({key for key in (*first, *second) if key})
         return 1 if entry(first, x) * entry(second, y) > entry(first, y) * entry(second, x) else -1
 
-    def states(self, times: Floats, *, finer: bool = False) -> WholeStates:
+    def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states at times of shape (t,)."""
         n, count = len(self.reduced.table.names), len(times)
         z, w = np.zeros((count, n, 2)), np.zeros((count, n, 2))
@@ -178,7 +157,7 @@ class Whole:
         size = np.abs(slopes[:, :, 0]).T
         nothing = np.zeros_like(offsets)
         reference = (spread(slopes, offsets, other), spread(slopes, nothing, rate)) if measured else None
-        return WholeStates(
+        return States(
             spread(slopes, offsets, z),
             spread(slopes, nothing, w),
             z_error @ size,
@@ -186,13 +165,13 @@ class Whole:
             reference,
         )
 
-    def states_at(self, z: Floats, w: Floats) -> WholeStates:
+    def states_at(self, z: Floats, w: Floats) -> States:
         """Return the states that go with coordinates and rates of the reduced table, each of shape (t, n)."""
         slopes, offsets = self.affine
         q = spread(slopes, offsets, np.stack([z, np.zeros_like(z)], axis=2))
         v = spread(slopes, np.zeros_like(offsets), np.stack([w, np.zeros_like(w)], axis=2))
         nothing = np.zeros(q.shape[:2])
-        return WholeStates(q, v, nothing, nothing, None)
+        return States(q, v, nothing, nothing, None)
 
     def in_pairs(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
         """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2).

@@ -12,7 +12,8 @@ from core.arrays import Floats
 from core.errors import AccuracyUnreachable, MechanicsError, NotApplicable, inside_field
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.language.scene import Scene
-from core.multibody.motion.whole import Whole, WholeStates
+from core.multibody.motion.motion import States
+from core.multibody.motion.whole import Whole
 from core.multibody.phases.inherited_in_phases import changes_in_phases
 from core.multibody.phases.method_samples import integrated, measured
 from core.multibody.phases.phase import PhaseMotion
@@ -187,7 +188,7 @@ class DescribedSystem:
         why = None if until is not None else NO_HORIZON_NEEDED
         return with_inherited(columns, replace(stated, horizon=until), moved, uncertainty, why=why)
 
-    def _following(self, whole: Whole, times: Floats, states: WholeStates) -> dict[str, Column]:
+    def _following(self, whole: Whole, times: Floats, states: States) -> dict[str, Column]:
         """Return the columns that follow from places and rates."""
         followed = [output for output in self.outputs if output != "trajectory"]
         return Columns(whole, times, states, "closed form").chosen(followed, self.motion.phases[0].determined)

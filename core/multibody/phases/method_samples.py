@@ -9,7 +9,8 @@ import numpy as np
 from core.arrays import Floats
 from core.errors import AccuracyUnreachable
 from core.multibody.motion.generic_equation import SceneSystem
-from core.multibody.motion.whole import Whole, WholeStates
+from core.multibody.motion.motion import States
+from core.multibody.motion.whole import Whole
 from core.multibody.phases.phase_columns import ColumnsInPhases
 from core.multibody.trajectory.column_errors import apart, require_known, worst
 from core.systems.budget import Budget
@@ -22,7 +23,7 @@ LOST = 1e-3
 """A motion that is known no better than this measures nothing."""
 
 
-def integrated(whole: Whole, times: Floats, method: AbstractMethod, budget: Budget) -> tuple[WholeStates, Work]:
+def integrated(whole: Whole, times: Floats, method: AbstractMethod, budget: Budget) -> tuple[States, Work]:
     """Return the states that a method computes, and what they cost."""
     system = SceneSystem(whole)
     if not len(times) or not len(system.initial_state):

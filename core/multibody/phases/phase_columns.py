@@ -9,7 +9,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import NotApplicable
-from core.multibody.motion.whole import WholeStates
+from core.multibody.motion.motion import States
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_states import columns_in, how_until, phase_at, states_in
 from core.multibody.trajectory.column_errors import FINEST, with_natural_sizes, worst
@@ -71,7 +71,7 @@ class ColumnsInPhases:
             )
         return columns_in(phase, times, states, how, self.outputs, self.rounding)
 
-    def of_states(self, times: Floats, states: WholeStates, how: How) -> dict[str, Column]:
+    def of_states(self, times: Floats, states: States, how: How) -> dict[str, Column]:
         """Return the columns of states of the first phase that are computed elsewhere."""
         return columns_in(self.motion.phases[0], times, states, how, self.outputs)
 

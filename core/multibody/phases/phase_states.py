@@ -11,7 +11,7 @@ from flint import arb
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.packed import nearest, pair
-from core.multibody.motion.whole import WholeStates
+from core.multibody.motion.motion import States
 from core.multibody.phases.phase import Phase
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.trajectory.column_errors import FINEST
@@ -39,7 +39,7 @@ def how_until(phases: Sequence[Phase], time: float) -> How:
     return "closed form" if all(map(in_closed_form, reached)) else "measured against pairs"
 
 
-def states_in(phase: Phase, times: Times, *, finer: bool = False) -> WholeStates:
+def states_in(phase: Phase, times: Times, *, finer: bool = False) -> States:
     """Return the states of a phase, with what its tracks differ by; finer ones where there is a choice."""
     if phase.bounces is not None:
         return _bouncing(phase, times)
@@ -59,7 +59,7 @@ def states_in(phase: Phase, times: Times, *, finer: bool = False) -> WholeStates
         reference = (other.q, other.v) if other.reference is None else other.reference
         q_error = q_error + SAFETY_FACTOR * np.abs((first.q - reference[0]).sum(axis=2))
         v_error = v_error + SAFETY_FACTOR * np.abs((first.v - reference[1]).sum(axis=2))
-    return WholeStates(first.q, first.v, q_error, v_error, reference)
+    return States(first.q, first.v, q_error, v_error, reference)
 
 
 def _unknown(phase: Phase, times: Times) -> Unknown | None:
@@ -72,7 +72,7 @@ def _unknown(phase: Phase, times: Times) -> Unknown | None:
     return places + np.outer(late, rates), np.broadcast_to(rates, (len(times), len(rates)))
 
 
-def _of_track(phase: Phase, k: int, times: Times, *, finer: bool) -> WholeStates:
+def _of_track(phase: Phase, k: int, times: Times, *, finer: bool) -> States:
     """Return the states of one track at times since the start of the scene."""
     whole, start = phase.models[k].whole, phase.tracks[k].time
     if isinstance(times, np.ndarray) and is_zero(start):
@@ -88,7 +88,7 @@ def _of_track(phase: Phase, k: int, times: Times, *, finer: bool) -> WholeStates
         return states
     q, v = _later(phase, k, states.q, states.v, rest)
     reference = None if states.reference is None else _later(phase, k, *states.reference, rest)
-    return WholeStates(q, v, states.q_error, states.v_error, reference)
+    return States(q, v, states.q_error, states.v_error, reference)
 
 
 def _later(phase: Phase, k: int, q: Floats, v: Floats, rest: Floats) -> tuple[Floats, Floats]:
@@ -107,7 +107,7 @@ def _added(pairs: Floats, more: Floats) -> Floats:
     return np.stack([total, low - (total - high)], axis=-1)
 
 
-def _bouncing(phase: Phase, times: Times) -> WholeStates:
+def _bouncing(phase: Phase, times: Times) -> States:
     assert phase.bounces is not None
     count = len(phase.tracks[0].q)
     q, v = np.zeros((len(times), count, 2)), np.zeros((len(times), count, 2))
@@ -119,13 +119,13 @@ def _bouncing(phase: Phase, times: Times) -> WholeStates:
             for i, x in enumerate(vector):
                 out[s, i] = pair(x, 0)
                 errors[k, s, i] = float(x.rad()) + FLOOR * abs(float(x))
-    return WholeStates(q, v, errors[0], errors[1], None)
+    return States(q, v, errors[0], errors[1], None)
 
 
 def columns_in(
     phase: Phase,
     times: Times,
-    states: WholeStates,
+    states: States,
     how: How,
     outputs: Sequence[object],
     rounding: float = FINEST,

@@ -16,8 +16,9 @@ from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.expansion import Expansion
 from core.multibody.equations.packed import pair
+from core.multibody.motion.motion import States
 from core.multibody.motion.numerical import BEFORE_SINGULAR
-from core.multibody.motion.whole import Whole, WholeStates
+from core.multibody.motion.whole import Whole
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_ends import expansions_of
@@ -75,7 +76,7 @@ class Stretch:
         """The double nearest to how long it is (s)."""
         return float(self.extent)
 
-    def states(self, times: Floats) -> WholeStates:
+    def states(self, times: Floats) -> States:
         """Return the states at times since the start of the stretch, shape (t,); those of the first may be negative."""
         if self.arc is None:
             return states_in(self.phase, self._since_the_start(times), finer=self.finer)
@@ -85,7 +86,7 @@ class Stretch:
         gone, won = within[:, None] * (v[:, 0] + 0.5 * within[:, None] * gain), within[:, None] * gain
         sizes = np.abs(q[:, 0]) + np.abs(within[:, None] * v[:, 0]) + np.abs(gone), np.abs(v[:, 0]) + np.abs(won)
         states = [np.stack([x[:, 0] + y, x[:, 1] + 0.0 * y], axis=-1) for x, y in ((q, gone), (v, won))]
-        return WholeStates(states[0], states[1], _ROUNDED * sizes[0], _ROUNDED * sizes[1], None)
+        return States(states[0], states[1], _ROUNDED * sizes[0], _ROUNDED * sizes[1], None)
 
     def columns(self, times: Floats, how: How, group: str) -> dict[str, Column]:
         """Return the columns of one output at times since the start of the stretch."""

@@ -11,7 +11,8 @@ import numpy as np
 
 from core.arrays import Floats
 from core.multibody.motion.attitudes import quaternions
-from core.multibody.motion.whole import Whole, WholeStates
+from core.multibody.motion.motion import States
+from core.multibody.motion.whole import Whole
 from core.multibody.motion.whole import values as values_of
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.momenta import StateFunction, momenta
@@ -42,7 +43,7 @@ class Columns:
 
     whole: Whole
     times: Floats
-    states: WholeStates
+    states: States
     how: How
     rounding: float = _SMALL
     unknown: Unknown | None = None

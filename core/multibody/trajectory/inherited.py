@@ -23,7 +23,8 @@ from core.multibody.algebra.rank import independent
 from core.multibody.language.numerals import SHIFT, Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.motion.modelling import Modelled, modelled
-from core.multibody.motion.whole import Whole, WholeStates
+from core.multibody.motion.motion import States
+from core.multibody.motion.whole import Whole
 from core.multibody.table.description import Described
 from core.multibody.trajectory.column_errors import relative
 from core.multibody.trajectory.columns import Columns
@@ -40,7 +41,7 @@ It is less than the share by which velocities may miss the connections."""
 NO_HORIZON_NEEDED = "the change stays below the accuracy at all of the times"
 """Why there is no horizon, where none is needed."""
 
-Derived = Callable[[Whole, Floats, WholeStates], dict[str, Column]]
+Derived = Callable[[Whole, Floats, States], dict[str, Column]]
 """From a scene and its states at some times to columns that follow from them."""
 
 INSTANTS = 64
@@ -69,7 +70,7 @@ class Changes:
     def of_columns(self, rows: np.ndarray) -> dict[str, float]:
         """Return the largest change of each column at some of the times."""
         states = self.whole.states(self.times[rows])
-        moved = WholeStates(states.q, states.v, self.q[rows], self.v[rows], None)
+        moved = States(states.q, states.v, self.q[rows], self.v[rows], None)
         columns = Columns(self.whole, self.times[rows], moved, "closed form").trajectory()
         own = {name: column.error for name, column in columns.items()}
         return own | {name: float(np.max(one[rows], initial=0.0)) for name, one in self.derived.items()}
@@ -87,7 +88,7 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
     places, rates = found.whole.in_pairs(times)
     q, v = np.zeros(places.shape[:2]), np.zeros(rates.shape[:2])
     nothing = np.zeros(places.shape[:2])
-    now = follow(found.whole, times, WholeStates(places, rates, nothing, nothing, None))
+    now = follow(found.whole, times, States(places, rates, nothing, nothing, None))
     derived = {name: np.zeros(len(times)) for name in now}
     for paths in inputs:
         other = _moved(scene, found, paths, SHIFT)
@@ -109,7 +110,7 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
             share = VISIBLE / 2.0 ** max(0, int(np.ceil(np.log2(max(growth, 1.0)))))
             state = [_shifted(value, slope * share) for slope, value in zip(slopes, (places, rates), strict=True)]
             whole = _moved(scene, found, paths, share)
-            for name, column in follow(whole, times, WholeStates(state[0], state[1], nothing, nothing, None)).items():
+            for name, column in follow(whole, times, States(state[0], state[1], nothing, nothing, None)).items():
                 away = (column.values - now[name].values) / share
                 derived[name] += np.abs(away) if away.ndim == 1 else np.linalg.norm(away, axis=1)
     return Changes(found.whole, times, q, v, derived)
