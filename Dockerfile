@@ -13,6 +13,7 @@ RUN environment/bin/pip install --require-hashes -r requirements.lock
 COPY core core
 COPY service service
 COPY examples examples
+COPY docker docker
 # Kernels are compiled by answering every example once, and kept beside the compiler's setting below. The generic
 # processor is named so that the image runs on every machine of its architecture.
 ENV NUMBA_CACHE_DIR=/polhode/compiled NUMBA_CPU_NAME=generic
@@ -20,19 +21,21 @@ RUN mkdir compiled && environment/bin/python -m service.execution.compilation &&
 
 FROM python:3.11-slim-bookworm
 
-RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin polhode
+# A volume that is mounted at a folder of the image is given that folder's owner.
+RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin polhode && mkdir /data && chown 10001 /data
 COPY --from=build /polhode /polhode
 WORKDIR /polhode
 ENV PATH=/polhode/environment/bin:$PATH \
     PYTHONDONTWRITEBYTECODE=1 \
     PYTHONUNBUFFERED=1 \
+    COMPILED=/polhode/compiled \
     NUMBA_CACHE_DIR=/tmp/compiled \
     NUMBA_CPU_NAME=generic \
-    POLHODE_HOST=0.0.0.0
+    POLHODE_HOST=0.0.0.0 \
+    POLHODE_DATA=/data
 USER 10001
 EXPOSE 8000
 STOPSIGNAL SIGTERM
 HEALTHCHECK --interval=10s --timeout=2s --start-period=60s --retries=3 \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:8000/readyz', timeout=1)"]
-# The compiler reads what it keeps only from where it could also write, which the root file system is not.
-ENTRYPOINT ["sh", "-c", "mkdir -p /tmp/compiled && cp -a /polhode/compiled/. /tmp/compiled/ && exec python -m service \"$@\"", "polhode"]
+ENTRYPOINT ["sh", "/polhode/docker/entry.sh"]

@@ -51,7 +51,7 @@ $(ENV)/made: requirements-dev.lock | $(ENV)/bin/python
 release: openapi release-contract site
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir build/release . ./clients/python
 	cd clients/typescript && npm install --no-audit --no-fund && npm pack --ignore-scripts --pack-destination ../../build/release
-	git archive --output build/release/image-context.tar.gz HEAD Dockerfile requirements.lock core service examples
+	git archive --output build/release/image-context.tar.gz HEAD Dockerfile requirements.lock core docker service examples
 
 release-contract: environment
 	$(BIN)/python -m tests.service.openapi.contract docs/openapi.json > docs/releases/$$($(BIN)/python -c 'from service import VERSION; print(VERSION)').json

@@ -120,8 +120,8 @@ class Settings(BaseSettings):
 
     data: str = Field(
         default="",
-        description="Folder of what is stored: studies and their results. By default polhode in the user's folder of "
-        "data ($XDG_DATA_HOME or ~/.local/share); made when the first study comes.",
+        description="Folder of what is stored: studies and their results. By default .data in a checkout, and "
+        "polhode in the user's folder of data ($XDG_DATA_HOME or ~/.local/share) otherwise; made by the first study.",
     )
     studies_results: str = Field(
         default="",

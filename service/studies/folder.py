@@ -10,11 +10,16 @@ from service.settings import Settings
 
 LOCK = "studies.lock"
 
+CHECKOUT = Path(__file__).parents[2]
+"""Folder of a checkout, whose studies are its own; an installed package has no project file there."""
+
 
 def data_folder(settings: Settings) -> Path:
     """Return the folder of data, which need not exist yet."""
     if settings.data:
         return Path(settings.data)
+    if (CHECKOUT / "pyproject.toml").exists():
+        return CHECKOUT / ".data"
     base = os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share"
     return Path(base) / "polhode"
 

@@ -110,7 +110,11 @@ def test_questions_and_answers_come_back_as_they_were(
 
 def test_every_operation_is_called_over_http(folder: Path, api_models: ModuleType, service: str) -> None:
     document = json.loads(DOCUMENT.read_text())
-    client = importlib.import_module("polhode_api").Client(base_url=service)
+    with importlib.import_module("polhode_api").Client(base_url=service) as client:
+        call_every_operation(document, client, api_models)
+
+
+def call_every_operation(document: Any, client: Any, api_models: ModuleType) -> None:
     operations = [entry for verbs in document["paths"].values() for entry in verbs.values()]
     study = ""
     # A study is dismissed at the end, and waited for before its results are fetched.

@@ -27,7 +27,7 @@ from service.settings import Settings
 from service.studies import resources
 from service.studies.cluster import TRIED_AGAIN
 from service.studies.database import DATABASE
-from service.studies.folder import Ownership
+from service.studies.folder import Ownership, data_folder
 from service.studies.store import Store, identity_of
 from service.studies.study import Owner, Quotas
 from service.studies.supervisor import Supervisor
@@ -672,6 +672,20 @@ def test_ids_are_long_and_random(tmp_path: Path) -> None:
     store.close()
     assert len(ids) == 9
     assert all(len(identity) == 24 for identity in ids)
+
+
+def test_a_checkout_has_a_folder_of_data_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folders = []
+    for name in ("one", "other"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "pyproject.toml").touch()
+        monkeypatch.setattr("service.studies.folder.CHECKOUT", tmp_path / name)
+        folders.append(data_folder(Settings(data="")))
+    assert folders == [tmp_path / "one" / ".data", tmp_path / "other" / ".data"]
+    # An installed package has the user's.
+    monkeypatch.setattr("service.studies.folder.CHECKOUT", tmp_path)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "share"))
+    assert data_folder(Settings(data="")) == tmp_path / "share" / "polhode"
 
 
 def test_one_process_at_a_time_owns_a_folder(tmp_path: Path) -> None:
