@@ -22,6 +22,7 @@ from core.quantities import Tolerance, Unit, check_value
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding
 from core.scenes.figures import MOTION, SceneEvent, SceneExample, marks_of, measured_names
 from core.scenes.motion import Event, NamedSceneMotion
+from core.scenes.motion_check import check_motion
 from core.scenes.sampled_motion import sampled
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
@@ -199,6 +200,8 @@ class NamedScene(ABC):
             For more samples or evaluations than are allowed.
         NotApplicable
             If the method needs what the scene does not have, or an event interrupts the motion.
+        SelfCheckFailed
+            If the motion that was found does not keep its equation: see `core.scenes.motion_check`.
         """
         check_value("accuracy", Tolerance, accuracy)
         wanted = self.wanted(outputs, timed=times is not None)
@@ -245,6 +248,8 @@ class NamedScene(ABC):
         if found.motion is not None and question is not None and "trajectory" in wanted:
             events = [event.in_doubles() for event in found.events]
             trajectory = sampled(found.motion, question, self.units(), found.ended or HORIZON, events)
+            if question.budget.audited:
+                check_motion(found.motion, trajectory.time)
         bare = Accuracy(accuracy, 0.0, "closed form") if trajectory is None else trajectory.accuracy
         answer = NamedSceneSolution(
             model=found.model,
