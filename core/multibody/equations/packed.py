@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -92,6 +92,16 @@ class Units:
     time: int
     action: int
     rows: list[int]
+
+    @cached_property
+    def up(self) -> Floats:
+        """What the numbers of coordinates in the kernels are multiplied by, shape (n,)."""
+        return np.array([two_to(e) for e in self.lengths])
+
+    @cached_property
+    def down(self) -> Floats:
+        """What coordinates are multiplied by for the kernels, shape (n,)."""
+        return np.array([two_to(-e) for e in self.lengths])
 
     def multiplier(self, row: int) -> int:
         """Return the exponent of a multiplier."""

@@ -11,7 +11,7 @@ import numpy as np
 from core.arrays import Floats
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly
-from core.multibody.equations.packed import pair
+from core.multibody.equations.packed import Packed, Units, pair
 from core.multibody.model_answer import ModeErrors, SmallMotion
 from core.multibody.table.table import Table
 
@@ -160,6 +160,15 @@ class Motion(Protocol):
     def lost_to_doubles(self) -> bool:
         """Whether it is answered by pairs of doubles in any case."""
         return False
+
+    def keep_to_pairs(self) -> None:
+        """Have it answered by pairs of doubles, where there is a choice."""
+        return None
+
+    @property
+    def in_arrays(self) -> tuple[Packed, Units] | None:
+        """Its table and units for compiled code, where it is integrated."""
+        return None
 
     @property
     def is_faster_in_doubles(self) -> bool:

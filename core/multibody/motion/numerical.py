@@ -91,6 +91,15 @@ class Numerical(Motion):
         units = units_of(table, acceleration)
         return cls(table, packed(table, chosen, units), units, why=why)
 
+    def keep_to_pairs(self) -> None:
+        """Have it answered by pairs, judged by a coarser run in pairs."""
+        self.lost_to_doubles = True
+
+    @property
+    def in_arrays(self) -> tuple[Packed, Units]:
+        """Its table and units for compiled code."""
+        return self.arrays, self.units
+
     def run(self, kind: str, end: float) -> Run:
         """Return steps to a time in the units of the arrays: "doubles", "reference", "fine" or "check"."""
         key = (kind, 1 if end >= 0.0 else -1)
@@ -121,7 +130,7 @@ class Numerical(Motion):
 
     def _apart(self, first: Floats, second: Floats, share: float) -> Floats:
         """Return differences of places or rates, shape (t, n), with a share of the largest of all coordinates."""
-        up = np.array([two_to(e) for e in self.units.lengths])
+        up = self.units.up
         each = np.abs((first[..., 0] - second[..., 0]) + (first[..., 1] - second[..., 1]))
         # Where the difference of one coordinate passes through zero, the reference's own error is larger.
         found: Floats = each + share * np.max(each / up, axis=1, initial=0.0, keepdims=True) * up
@@ -148,7 +157,7 @@ class Numerical(Motion):
                         remedy="ask for earlier times",
                     )
                 q[way], v[way] = evaluate(run, chosen)
-        up = np.array([two_to(e) for e in self.units.lengths])[None, :, None]
+        up = self.units.up[None, :, None]
         return q * up, v * up * two_to(-self.units.time)
 
     def places_in_doubles(self, times: Floats) -> Floats:
@@ -160,7 +169,7 @@ class Numerical(Motion):
             placed(run.starts, run.series, np.ascontiguousarray(scaled), run.which(scaled), q)
         else:
             q = evaluate(run, scaled)[0][..., 0]
-        found: Floats = q * np.array([two_to(e) for e in self.units.lengths])
+        found: Floats = q * self.units.up
         return found
 
     def nodes(self, end: float) -> Floats:
@@ -199,7 +208,7 @@ class Numerical(Motion):
             return None
         reference = self.run("reference", scaled)
         if not reference.singular:
-            self.lost_to_doubles = True
+            self.keep_to_pairs()
             return None
         inverse = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
         nearest = np.abs(evaluate(reference, np.array([reference.end]))[0][0, inverse, 0]).max(initial=0.0)

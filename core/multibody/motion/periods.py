@@ -105,7 +105,7 @@ class Periodic(Motion):
         fastest = float(np.max(np.abs(self.run.series[:, :, 1, 0]), initial=0.0))
         hardest = 2.0 * float(np.max(np.abs(self.run.series[:, :, 2, 0]), initial=0.0))
         drift = (np.abs(counts) + 1.0) * late + np.abs(scaled) * 2.0**-104
-        up = np.array([two_to(e) for e in self.units.lengths])
+        up = self.units.up
         down = two_to(-self.units.time)
         q_error = np.outer(drift * fastest + off * (np.abs(counts) + 1.0), up)
         v_error = np.outer(drift * hardest + off * (np.abs(counts) + 1.0), up * down)

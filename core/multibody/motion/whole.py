@@ -102,15 +102,17 @@ class Whole:
     def reduced_arrays(self, parts: tuple[int, ...]) -> tuple[Packed, Units, list[int]]:
         """Return the reduced table of some parts for compiled code, its units, and its coordinates."""
         if parts not in self._packed:
+            own = self.parts[parts[0]] if len(parts) == 1 else None
+            known = None if own is None else own[1].in_arrays
+            if own is not None and known is not None:
+                self._packed[parts] = (*known, list(own[0]))
+                return self._packed[parts]
             # A clock is in every part that it drives.
             where = sorted({i for k in parts for i in self.parts[k][0]})
             table = restricted(self.reduced.table, where)
             units = units_of(table, [self.reduced_accelerations[i] for i in where])
-            self._packed[parts] = (
-                packed(table, independent(row.line(table.q) for row in table.rows), units),
-                units,
-                where,
-            )
+            chosen = independent(row.line(table.q) for row in table.rows)
+            self._packed[parts] = (packed(table, chosen, units), units, where)
         return self._packed[parts]
 
     @cached_property
@@ -281,7 +283,7 @@ class Whole:
 
     def _solved(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:
         arrays, units, chosen = self.arrays
-        down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
+        down = units.down[None, :, None]
         acceleration, found = np.zeros_like(q), np.zeros((len(q), len(chosen), 2))
         done = multipliers_pairs(arrays, q * down, v * (down * two_to(units.time)), acceleration, found)
         if done < len(q):

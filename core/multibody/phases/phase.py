@@ -15,8 +15,6 @@ from core.multibody.contacts.projection import project
 from core.multibody.equations.dynamics import ForceAtStart, Multipliers, forces_at_start, multipliers_at_start
 from core.multibody.equations.expansion import Expansion
 from core.multibody.motion.modelling import Modelled, models_of
-from core.multibody.motion.motion import Motion
-from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.tracks import Track, Tracks
 from core.multibody.phases.turning_slip import ENDED, TurningSlip, turning_model
@@ -228,14 +226,9 @@ def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactS
     if any(row.slide is not None for row in phase.table.rows):
         return turning_model(replace(base, measures=measures), decided.unilateral, phase.normal, start)
     found = models_of(replace(base, measures=measures), start.moved, start.fitted)
-    parts: list[tuple[Sequence[int], Motion]] = []
-    for (indices, motion), piece in zip(found.whole.parts, found.pieces, strict=True):
-        own = motion
-        if isinstance(motion, Numerical):
-            own = Numerical.of(piece.table, piece.acceleration, piece.chosen, motion.why)
-            own.lost_to_doubles = True
-        parts.append((indices, own))
-    return replace(found, whole=replace(found.whole, parts=parts))
+    for _, motion in found.whole.parts:
+        motion.keep_to_pairs()
+    return found
 
 
 def _apart(now: Ball, known: Ball) -> float:

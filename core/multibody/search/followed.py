@@ -22,7 +22,7 @@ from core.multibody.search.pieces import Expanded
 MOST_PIECES = 60_000
 """Pieces that one search may take."""
 _AT_ONCE = 256
-"""Pieces that are expanded at once at most: twice as many each time, as what follows an event is expanded in vain."""
+"""Pieces that are expanded at once at most: four times as many each time, as what follows an event is in vain."""
 _COARSE = 2.0**-40
 """Share of the terms that a quantity is wrong by at most in doubles: thousands of roundings."""
 _CLOSER = 2.0**-4
@@ -178,7 +178,7 @@ class Followed:
             needed = self._count * self._reached / max(ahead[-1].start, self._reached * 2.0**-60)
             what = "pieces of the motion that are searched"
             raise BudgetExceeded(what, needed, MOST_PIECES, path=("times",), remedy="ask for a shorter time")
-        self._at_once = min(2 * self._at_once, _AT_ONCE)
+        self._at_once = min(4 * self._at_once, _AT_ONCE)
         batch = self._batch(ahead, closely=closely)
         for number, one in enumerate(ahead):
             if closely or batch.plain[number]:

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.arrays import Floats, Integers
+from core.arrays import Floats
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly
 from core.multibody.equations.packed import Packed, Units, two_to
@@ -163,10 +163,9 @@ class ExpandedWhole:
         n, rows = len(units.lengths), len(self.whole.measures.table.rows)
         multipliers = np.zeros((len(times), rows, COEFFICIENTS, 2))
         multiplier_sizes = np.zeros((len(times), rows, COEFFICIENTS))
-        for k, row in enumerate(chosen):
-            factor = two_to(units.multiplier(row))
-            multipliers[:, row] = series[:, n + k, :COEFFICIENTS] * factor
-            multiplier_sizes[:, row] = sizes[:, n + k, :COEFFICIENTS] * factor
+        factors = np.array([two_to(units.multiplier(row)) for row in chosen])
+        multipliers[:, chosen] = series[:, n:, :COEFFICIENTS] * factors[:, None, None]
+        multiplier_sizes[:, chosen] = sizes[:, n:, :COEFFICIENTS] * factors[:, None]
         return Pieces(*lengths, series[:, :n], sizes[:, :n], multipliers, multiplier_sizes)
 
     def _states(self, times: Floats) -> tuple[Floats, Floats]:
@@ -220,26 +219,17 @@ def _expanded(
 ) -> tuple[tuple[Floats, Floats], Floats, Floats]:
     """Return lengths of pieces and how long they could be (s); coefficients, in SI units but for multipliers; sizes."""
     q, v = states
-    down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
     count, n = q.shape[:2]
-    exponents, steps = np.zeros(count, dtype=np.int64), np.zeros(count)
+    lengths, steps = np.zeros(count), np.zeros(count)
     series = np.zeros((count, n + arrays.rate.shape[0], ORDER + 1, 2))
     sizes = np.zeros(series.shape[:-1])
     # States of another layout would have the kernel compiled once more.
+    down = units.down[None, :, None]
     places, rates = np.ascontiguousarray(q * down), np.ascontiguousarray(v * (down * two_to(units.time)))
-    forwards = -1.0 if np.any(np.asarray(reach) < 0.0) else 1.0
-    longest = _covering(reach, units.time)
-    done = expand(arrays, places, rates, longest, forwards, exponents, steps, series, sizes)
+    done = expand(arrays, places, rates, reach, units.up, units.time, lengths, steps, series, sizes)
     if done < count:
         raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
-    way = np.sign(reach)
-    signs = np.where(way[:, None] < 0.0, (-1.0) ** np.arange(ORDER + 1), 1.0)
-    series *= signs[:, None, :, None]
-    up = np.array([two_to(e) for e in units.lengths])
-    series[:, :n] *= up[None, :, None, None]
-    sizes[:, :n] *= up[None, :, None]
-    lengths = way * np.ldexp(1.0, exponents + units.time), steps * two_to(units.time)
-    return lengths, series, sizes
+    return (lengths, steps), series, sizes
 
 
 def repeats_after(whole: Whole, coordinates: Sequence[int] | None = None) -> float | None:
@@ -252,10 +242,3 @@ def repeats_after(whole: Whole, coordinates: Sequence[int] | None = None) -> flo
     if len(moving) != 1 or moving[0].period is None or moving[0].winds_on:
         return None
     return PAST_A_PERIOD * float(moving[0].period)
-
-
-def _covering(reach: Sequence[float] | Floats, time: int) -> Integers:
-    """Return the exponents of the least powers of two, in units of time, that are at least as large as some times."""
-    mantissas, exponents = np.frexp(np.abs(reach))
-    found: Integers = (exponents - (mantissas == 0.5) - time).astype(np.int64)
-    return found

@@ -63,9 +63,10 @@ def expand(
     table: Packed,
     q: Floats,
     v: Floats,
-    longest: Integers,
-    way: float,
-    exponents: Integers,
+    reach: Floats,
+    up: Floats,
+    time: int,
+    lengths: Floats,
     steps: Floats,
     series: Floats,
     sizes: Floats,
@@ -75,16 +76,18 @@ def expand(
     Parameters
     ----------
     q, v : (t, n, 2)
-    longest : (t,)
-        Exponents of two of the longest times that are of interest.
-    way : float
-        Sign of the times that follow the states.
-    exponents : (t,)
-        Filled with those of the lengths of the pieces, at most these.
+        In the units of the table.
+    reach : (t,)
+        The longest times that are of interest (s), all of one sign.
+    up, time : (n,) and int
+        Units of the coordinates, and the exponent of that of time.
+    lengths : (t,)
+        Filled with the lengths of the pieces (s): powers of two, no longer than the least ones that cover the reach.
     steps : (t,)
-        Filled with the times over which the last coefficients are small.
+        Filled with the times over which the last coefficients are small (s).
     series : (t, n + m, order + 1, 2)
-        Filled with coefficients of powers of time as a share of the length; multipliers have two less.
+        Filled with coefficients of powers of time as a share of the length, those of coordinates in SI units;
+        multipliers have two less.
     sizes : (t, n + m, order + 1)
         Filled with the largest coefficient of the same group and power, to which rounding is in proportion.
     """
@@ -96,6 +99,7 @@ def expand(
     own = np.empty((n + m if table.laws.gaps > 0 else n, order + 1))
     group = np.full(len(own), FORCES)
     group[:n] = table.group
+    way = 1.0 if reach[0] > 0.0 else -1.0
     products.course[0] = way
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
@@ -111,10 +115,12 @@ def expand(
             step = _to_corner(table, space, products, own, group, step)
         if not step > 0.0:
             return s
-        exponent, steps[s] = longest[s], step
+        mantissa, exponent = math.frexp(abs(reach[s]))
+        exponent -= time + (mantissa == 0.5)
+        steps[s] = math.ldexp(step, time)
         if step < math.ldexp(1.0, min(exponent, 1000)):
             exponent = math.floor(math.log2(step))
-        exponents[s] = exponent
+        lengths[s] = math.ldexp(way, exponent + time)
         for k in range(order + 1):
             # The powers of what does not change are zero, whatever the length.
             power = min(exponent * k, 1000)
@@ -147,4 +153,11 @@ def expand(
                     if table.group[j] == table.group[i]:
                         most = max(most, abs(series[s, j, k, 0]))
                 sizes[s, i, k] = most
+        for k in range(order + 1):
+            sign = way if k % 2 == 1 else 1.0
+            for i in range(n + m):
+                unit = up[i] if i < n else 1.0
+                series[s, i, k, 0] *= sign * unit
+                series[s, i, k, 1] *= sign * unit
+                sizes[s, i, k] *= unit
     return len(q)
