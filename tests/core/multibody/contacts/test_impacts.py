@@ -500,3 +500,17 @@ def test_impacts_in_an_order_that_end_as_a_limit_leave_nothing_for_another_one(s
     assert [event.impulses["normal"] for event in answer.events] == pytest.approx([2 * first / 3, first / 3], rel=1e-15)
     for i in range(3):
         assert column(answer, f"b{i}.velocity").values[0] == pytest.approx([first / 3, 0], rel=1e-14)
+
+
+def test_bounces_that_stick_at_every_impact_go_as_far_as_the_sum_of_their_arcs() -> None:
+    """Gravity along the floor moves a particle by a d^2/2 in an arc of d = 2 w e^n/g; impacts take the rate."""
+    floor = {"kind": "contact", "name": "floor", "place": "m", "on": {"at": [0, 0]}, "restitution": "1/2"}
+    body = {"mass": 1, "at": [0, 0], "velocity": [0, 1]}
+    scene = {"gravity": [3, -10], "bodies": {"m": body}, "connections": [floor | {"friction": 5}]}
+    answer = solve_scene(read(scene), [0.5], ("trajectory",))
+    # w = 1, so that d = 1/5, and 3/2 (1/5)^2/(1 - 1/4) = 2/25.
+    for name, exact in (("m.position", [0.08, 0.0]), ("m.velocity", [0.0, 0.0])):
+        found = column(answer, name)
+        assert np.abs(found.values[0] - exact).max() <= found.error + 1e-16
+    assert answer.events[-1].name == "floor"
+    assert abs(answer.events[-1].time - 0.4) <= answer.events[-1].error + 1e-16
