@@ -325,7 +325,6 @@ TESTED_IN |= {
         "test_stated_errors": "algebra/doubles",
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",
         "motion/test_free_body": "motion/turning_body",
-        "trajectory/test_nearest": "motion/attitudes",
         "search/test_first_zero": (
             "search/bands search/batch search/curves search/first_of_motion search/followed search/location "
             "search/pieces search/taylor"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.multibody.solve import solve_scene
-from core.multibody.trajectory.column_errors import worst
+from core.multibody.trajectory.column_errors import apart, worst
 from core.systems.methods import RungeKutta4
 from core.systems.trajectory import Column
 from tests.core.multibody.worked_examples import column, points, read
@@ -22,6 +22,12 @@ def made(values: list[float], unit: str, error: float) -> Column:
 def test_errors_are_relative_to_the_largest_value_of_a_unit() -> None:
     columns = {"a": made([1.0, -4.0], "m", 1e-12), "b": made([0.0], "m", 4e-12), "c": made([2e-3], "rad", 1e-9)}
     assert worst(columns) == pytest.approx(5e-7)
+
+
+def test_opposite_quaternions_are_one_attitude() -> None:
+    one = Column(np.array([[0.6, 0.0, 0.8, 0.0]]), "1", 0.0, "measured against pairs")
+    assert apart(one, Column(-one.values, "1", 0.0, "measured against pairs")) == 0.0
+    assert apart(one, Column(one.values[:, ::-1], "1", 0.0, "measured against pairs")) == pytest.approx(2.0**0.5)
 
 
 def test_angles_that_are_zero_within_their_error_are_measured_by_radians_and_speeds() -> None:
