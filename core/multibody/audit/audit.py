@@ -177,7 +177,13 @@ class _Audit:
         if asked.halves:
             inner = samples.at(slice(1, last))
             found = check_windows(
-                ledger, description, freedoms, inner, _rows(ahead, slice(1, last)), asked.halves, sizes.extent
+                ledger,
+                description,
+                freedoms,
+                inner,
+                {name: pose.at(slice(1, last)) for name, pose in ahead.items()},
+                asked.halves,
+                sizes.extent,
             )
             unsure = np.concatenate([unsure, found.unsure], axis=1)
             own = [accelerations, found.accelerations] if begins else [found.accelerations]
@@ -287,13 +293,6 @@ class _Asked:
 def _spun(description: Description, samples: Samples) -> bool:
     """Return whether the spins of all bodies are answered."""
     return all(samples.spun(name) for name, body in description.bodies.items() if body.inertia is not None)
-
-
-def _rows(placement: Placement, rows: slice) -> Placement:
-    return {
-        name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn, pose.time)))  # type: ignore[arg-type]
-        for name, pose in placement.items()
-    }
 
 
 def _was_rounded(description: Description, answer: SceneSolution) -> bool:

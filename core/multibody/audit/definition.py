@@ -219,6 +219,8 @@ class Definition:
 
 
 def _places(value: object) -> Iterator[Place]:
+    if isinstance(value, (float, str)) or value is None:
+        return
     if isinstance(value, Place):
         yield value
     elif isinstance(value, tuple):

@@ -14,7 +14,7 @@ import numpy as np
 from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
 from core.multibody.audit.newton import Freedoms
-from core.multibody.audit.placement import STEP, Numbers, Placement, Pose, moved
+from core.multibody.audit.placement import STEP, Numbers, Placement, moved
 from core.multibody.language.scene import Scene
 
 STATIONARY = 2.0**-26
@@ -38,7 +38,7 @@ def audited_assembly(sketch: Scene, found: Scene) -> Failure | None:
     if not description.moderate:
         return None
     names = tuple(sketch.bodies) if sketch.assemble == "nearest" else tuple(sketch.assemble["nearest"])  # type: ignore[index]
-    placement = _as_one_sample(start)
+    placement = {name: pose.at(None) for name, pose in start.items()}
     _, virtual = Freedoms(description).virtual(names)
     count = len(virtual[names[0]].velocity)
     ahead, ledger, rows, none = moved(placement, virtual), Ledger(ROUNDING), [], np.zeros(1)
@@ -63,13 +63,6 @@ def audited_assembly(sketch: Scene, found: Scene) -> Failure | None:
         worst = np.abs(left).max(initial=0.0)
         ledger.compare("the places are the nearest", "", none, np.array([worst]), allowed)
     return ledger.worst
-
-
-def _as_one_sample(start: Placement) -> Placement:
-    return {
-        name: Pose(*(None if x is None else np.asarray(x)[None] for x in (pose.position, pose.rotation, pose.turn)))  # type: ignore[arg-type]
-        for name, pose in start.items()
-    }
 
 
 def _slope(description: Description, names: Sequence[str], placement: Placement) -> Numbers | None:

@@ -49,6 +49,11 @@ class Pose(NamedTuple):
     turn: Numbers | None = None
     time: Numbers | None = None
 
+    def at(self, rows: Numbers | slice | None) -> Pose:
+        """Return some samples of it; for None, itself as one sample."""
+        rotation, turn, time = (None if x is None else x[rows] for x in self[1:])
+        return Pose(self.position[rows], rotation, turn, time)
+
 
 class Twist(NamedTuple):
     """How a body moves.
@@ -63,6 +68,10 @@ class Twist(NamedTuple):
 
     velocity: Numbers
     spin: Numbers | None = None
+
+    def at(self, rows: Numbers | slice) -> Twist:
+        """Return some samples of it."""
+        return Twist(self.velocity[rows], None if self.spin is None else self.spin[rows])
 
 
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])

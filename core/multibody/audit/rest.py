@@ -21,7 +21,7 @@ from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.equilibria import none_of
 from core.multibody.audit.failure import Failure, Ledger
 from core.multibody.audit.newton import Freedoms, balance
-from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, Undefined
+from core.multibody.audit.placement import Motion, Numbers, Placement, Twist, Undefined
 from core.multibody.language.scene import Scene
 
 BALANCED = 1e-9
@@ -129,7 +129,7 @@ def _balanced(description: Description, *, wide: bool) -> bool:
 def _at_start(description: Description) -> tuple[Placement, Motion]:
     placement, still = {}, {}
     for name, pose in description.start.items():
-        placement[name] = Pose(*(None if x is None else np.asarray(x)[None] for x in pose))  # type: ignore[arg-type]
+        placement[name] = pose.at(None)
         turns = description.bodies[name].inertia is not None
         spin = np.zeros((1, 3) if description.dimension == 3 else 1) if turns else None
         still[name] = Twist(np.zeros((1, description.dimension)), spin)

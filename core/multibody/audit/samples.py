@@ -56,14 +56,8 @@ class Samples:
 
     def at(self, rows: Numbers | slice) -> Samples:
         """Return some of the samples, by a mask, their numbers or a slice."""
-        placement = {
-            name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn, pose.time)))  # type: ignore[arg-type]
-            for name, pose in self.placement.items()
-        }
-        motion = {
-            name: Twist(twist.velocity[rows], None if twist.spin is None else twist.spin[rows])
-            for name, twist in self.motion.items()
-        }
+        placement = {name: pose.at(rows) for name, pose in self.placement.items()}
+        motion = {name: twist.at(rows) for name, twist in self.motion.items()}
         forces, errors, force_errors = (
             {name: values[rows] for name, values in each.items()}
             for each in (self.forces, self.errors, self.force_errors)
@@ -86,14 +80,8 @@ class Samples:
         def flat(x: Numbers | None) -> Numbers | None:
             return None if x is None else x.reshape(-1, *x.shape[2:])
 
-        placement = {
-            name: Pose(flat(pose.position), flat(pose.rotation), flat(pose.turn), flat(pose.time))  # type: ignore[arg-type]
-            for name, pose in self.placement.items()
-        }
-        motion = {
-            name: Twist(flat(twist.velocity), flat(twist.spin))  # type: ignore[arg-type]
-            for name, twist in self.motion.items()
-        }
+        placement = {name: Pose(*map(flat, pose)) for name, pose in self.placement.items()}  # type: ignore[arg-type]
+        motion = {name: Twist(*map(flat, twist)) for name, twist in self.motion.items()}  # type: ignore[arg-type]
         forces = {name: values.reshape(-1) for name, values in self.forces.items()}
         return Samples(self.times, placement, motion, forces, self.errors, self.force_errors)
 
@@ -172,22 +160,15 @@ def _tilted(rotation: Numbers, i: int) -> Numbers:
 def joined(parts: Sequence[tuple[Placement, Motion]]) -> tuple[Placement, Motion]:
     """Return placements and motions of the same bodies one after another; what one of them lacks is left out."""
 
-    def every(values: list[Numbers | None]) -> Numbers | None:
+    def every(values: tuple[Numbers | None, ...]) -> Numbers | None:
         given = [value for value in values if value is not None]
         return np.concatenate(given) if len(given) == len(values) else None
 
     placement, motion = {}, {}
     for name in parts[0][0]:
         poses, twists = [where[name] for where, _ in parts], [how[name] for _, how in parts]
-        position, velocity = (
-            np.concatenate([pose.position for pose in poses]),
-            np.concatenate([twist.velocity for twist in twists]),
-        )
-        rotation = None if poses[0].rotation is None else every([pose.rotation for pose in poses])
-        turn = None if poses[0].turn is None else every([pose.turn for pose in poses])
-        time = None if poses[0].time is None else every([pose.time for pose in poses])
-        spin = None if twists[0].spin is None else every([twist.spin for twist in twists])
-        placement[name], motion[name] = Pose(position, rotation, turn, time), Twist(velocity, spin)
+        placement[name] = Pose(*map(every, zip(*poses, strict=True)))  # type: ignore[arg-type]
+        motion[name] = Twist(*map(every, zip(*twists, strict=True)))  # type: ignore[arg-type]
     return placement, motion
 
 
