@@ -14,6 +14,7 @@ PAGES_ELSEWHERE = {
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
     "clients/python/README.md": "python-client.md",
+    "clients/typescript/README.md": "typescript-client.md",
     "clients/lms/prairielearn/README.md": "prairielearn.md",
     "clients/lms/gradescope/README.md": "gradescope.md",
     "clients/lms/moodle/README.md": "moodle.md",
@@ -43,7 +44,8 @@ def navigation() -> list[Any]:
         {"Read and choose the accuracy": "accuracy.md"},
         {"Compute large trajectories": "large-trajectories.md"},
         {"Use the Python client": "python-client.md"},
-        {"Deploy the service": "deployment.md"},
+        {"Use the TypeScript client": "typescript-client.md"},
+        {"Install and deploy the service": "deployment.md"},
     ]
     return [
         {"Home": "index.md"},
