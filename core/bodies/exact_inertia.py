@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import TypeVar
+
+from flint import arb
 
 from core.bodies.measured import THIN_ROD
 from core.bodies.principal_inertia import Symmetry
@@ -14,6 +17,8 @@ from core.errors import InvalidParameter
 
 Vector = tuple[Fraction, Fraction, Fraction]
 Matrix = tuple[Vector, Vector, Vector]
+
+Exact = TypeVar("Exact", Fraction, arb)
 
 
 @dataclass(frozen=True)
@@ -175,12 +180,12 @@ def _symmetric_functions(tensor: Matrix) -> tuple[Fraction, Fraction, Fraction]:
     return a + d + f, minors, _determinant(tensor, Fraction(0))
 
 
-def cross(u: Sequence[Fraction], v: Sequence[Fraction]) -> Vector:
+def cross(u: Sequence[Exact], v: Sequence[Exact]) -> tuple[Exact, Exact, Exact]:
     """Return u x v."""
     return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
 
 
-def triple(values: Sequence[Fraction]) -> Vector:
-    """Return three fractions as a vector."""
+def triple(values: Sequence[Exact]) -> tuple[Exact, Exact, Exact]:
+    """Return three numbers as a vector."""
     x, y, z = values
     return x, y, z

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from flint import arb, fmpq
 
+from core.bodies.exact_inertia import cross
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
 from core.certified.free_rotation import Rows
 from core.digits.adaptive_precision import bits_for, check_digits, each_determined, until_determined
 from core.digits.decimals import decimal, decimals
-from core.rotation.exact_start import Balls, cross_of_balls, dot
+from core.rotation.exact_start import Balls, dot
 from core.rotation.surfaces.energy_surface import CORNERS, Faces, check_resolution, geodesic, topology
 
 
@@ -76,7 +77,7 @@ def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: in
         unit = [direction(n) for n in range(len(weights))]
         points = [on_surface(d) for d in unit]
         # A linear map takes the sphere to the ellipsoid, so the volume ratio is the same.
-        volume = sum((dot(unit[a], cross_of_balls(unit[b], unit[c])) for a, b, c in faces), arb(0))
+        volume = sum((dot(unit[a], cross(unit[b], unit[c])) for a, b, c in faces), arb(0))
         triangles = [(points[a], points[b], points[c]) for a, b, c in faces]
         angle = _extreme(arb.min, (x for triangle in triangles for x in _angles(*triangle)))
         square = _extreme(arb.max, (x for triangle in triangles for x in _squares(*triangle)))
@@ -151,7 +152,7 @@ def _extreme(of: Callable[[arb, arb], arb], values: Iterable[arb]) -> arb:
 def _angles(a: Balls, b: Balls, c: Balls) -> Iterable[arb]:
     for x, y, z in ((a, b, c), (b, c, a), (c, a, b)):
         u, v = _minus(y, x), _minus(z, x)
-        across = cross_of_balls(u, v)
+        across = cross(u, v)
         yield arb.atan2(dot(across, across).sqrt(), dot(u, v))
 
 

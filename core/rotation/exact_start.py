@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple
 from flint import arb, fmpq, fmpq_poly
 
 from core.balls import Undetermined
-from core.bodies.exact_inertia import ExactInertia, Vector, cross
+from core.bodies.exact_inertia import ExactInertia, Vector, cross, triple
 from core.digits.adaptive_precision import bits_for, until_determined, working_bits
 from core.digits.decimals import FEWEST_DIGITS
 from core.digits.exact_inputs import enclosed
@@ -193,9 +193,9 @@ class ExactStart:
         rows = []
         for body_axis in range(3):
             row = [arb(s if n == body_axis else 0) for s, n in zip(signs, self.order, strict=True)]
-            rows.append(_three(row))
+            rows.append(triple(row))
         return PrincipalState(
-            _three([enclosed(x) for x in moments]), _gaps(moments), _three(rates), (rows[0], rows[1], rows[2])
+            triple([enclosed(x) for x in moments]), _gaps(moments), triple(rates), (rows[0], rows[1], rows[2])
         )
 
     def _symmetric(self, moments: tuple[Fraction, ...]) -> PrincipalState:
@@ -222,13 +222,13 @@ class ExactStart:
         zero = arb(0)
         if single == high:
             return PrincipalState(
-                _three([enclosed(x) for x in moments]),
+                triple([enclosed(x) for x in moments]),
                 _gaps(moments),
                 (plane, zero, spin),
                 _columns(first, second, axis),
             )
         return PrincipalState(
-            _three([enclosed(x) for x in moments]), _gaps(moments), (spin, plane, zero), _columns(axis, first, second)
+            triple([enclosed(x) for x in moments]), _gaps(moments), (spin, plane, zero), _columns(axis, first, second)
         )
 
     def _general(self) -> PrincipalState:
@@ -237,9 +237,9 @@ class ExactStart:
         low, middle, high = moments
         axes = [_eigenvector(self.inertia, x) for x in moments]
         first, second, third = axes
-        if not dot(cross_of_balls(first, second), third) > 0:
-            third = _three([-x for x in third])
-        w = _three([enclosed(x) for x in self.angular_velocity])
+        if not dot(cross(first, second), third) > 0:
+            third = triple([-x for x in third])
+        w = triple([enclosed(x) for x in self.angular_velocity])
         return PrincipalState(
             moments,
             (middle - low, high - middle, high - low),
@@ -290,12 +290,12 @@ def _eigenvector(inertia: ExactInertia, moment: arb) -> Balls:
     if not abs(column[longest]) > 0:
         raise Undetermined
     norm = dot(column, column).sqrt()
-    return _three([x / norm for x in column])
+    return triple([x / norm for x in column])
 
 
 def _unit(vector: list[Fraction] | Vector) -> Balls:
     norm = enclosed(sum((x * x for x in vector), Fraction(0))).sqrt()
-    return _three([enclosed(x) / norm for x in vector])
+    return triple([enclosed(x) / norm for x in vector])
 
 
 def dot(u: Balls, v: Balls) -> arb:
@@ -303,16 +303,6 @@ def dot(u: Balls, v: Balls) -> arb:
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
-def cross_of_balls(u: Balls, v: Balls) -> Balls:
-    """Return u x v."""
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
-
-
 def _columns(x: Balls, y: Balls, z: Balls) -> tuple[Balls, Balls, Balls]:
     rows = [(x[i], y[i], z[i]) for i in range(3)]
     return rows[0], rows[1], rows[2]
-
-
-def _three(values: list[arb]) -> Balls:
-    x, y, z = values
-    return x, y, z

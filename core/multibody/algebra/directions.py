@@ -1,11 +1,11 @@
-"""Unit vectors along a direction that a description gives and across it, and the cross product, in balls."""
+"""Unit vectors along a direction that a description gives and across it, and products of vectors, in balls."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from core.errors import InvalidParameter, Path
-from core.multibody.algebra.polynomials import ONE, Ball, is_zero
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
 
 
 def unit(vector: Sequence[Ball], path: Path) -> list[Ball]:
@@ -42,3 +42,8 @@ def perpendicular(along: Sequence[Ball], path: Path) -> list[list[Ball]]:
 def cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
     """Return the cross product a x b of two vectors with three components."""
     return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]
+
+
+def scalar_product(a: Sequence[Ball], b: Sequence[Ball]) -> Ball:
+    """Return the scalar product a.b of two vectors."""
+    return sum((x * y for x, y in zip(a, b, strict=True)), ZERO)

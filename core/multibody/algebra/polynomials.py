@@ -8,7 +8,7 @@ own measure of rounding, so no threshold of ours enters, whatever the units.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from flint import arb
 
@@ -19,6 +19,8 @@ Poly = dict[tuple[int, ...], Ball]
 
 LinearForm = dict[int, Poly]
 """A linear form in the rates: for each coordinate whose rate enters, an affine polynomial. Lines of W are such."""
+
+Key = TypeVar("Key")
 
 ZERO: Ball = arb(0)
 """Nothing, without a radius."""
@@ -92,14 +94,14 @@ def gradient(poly: Poly) -> dict[int, Poly]:
     found: dict[int, Poly] = {}
     for key, value in poly.items():
         if len(key) == 1:
-            _add(found.setdefault(key[0], {}), (), value)
+            add_term(found.setdefault(key[0], {}), (), value)
         elif len(key) == 2:
             i, j = key
             if i == j:
-                _add(found.setdefault(i, {}), (i,), 2 * value)
+                add_term(found.setdefault(i, {}), (i,), 2 * value)
             else:
-                _add(found.setdefault(i, {}), (j,), value)
-                _add(found.setdefault(j, {}), (i,), value)
+                add_term(found.setdefault(i, {}), (j,), value)
+                add_term(found.setdefault(j, {}), (i,), value)
     return found
 
 
@@ -137,16 +139,16 @@ def substituted(poly: Poly, expressions: Sequence[Poly]) -> Poly:
     total: Poly = {}
     for key, value in poly.items():
         if len(key) == 0:
-            _add(total, (), value)
+            add_term(total, (), value)
         elif len(key) == 1:
             for a, x in expressions[key[0]].items():
-                _add(total, a, value * x)
+                add_term(total, a, value * x)
         else:
             for a, x in expressions[key[0]].items():
                 scaled = value * x
                 for b, y in expressions[key[1]].items():
                     pair = a + b
-                    _add(total, (pair[1], pair[0]) if len(pair) == 2 and pair[0] > pair[1] else pair, scaled * y)
+                    add_term(total, (pair[1], pair[0]) if len(pair) == 2 and pair[0] > pair[1] else pair, scaled * y)
     return {key: value for key, value in total.items() if ZERO not in value}
 
 
@@ -155,6 +157,7 @@ def variables(polys: Iterable[Poly]) -> set[int]:
     return {i for poly in polys for key in poly for i in key}
 
 
-def _add(total: Poly, key: tuple[int, ...], value: Ball) -> None:
+def add_term(total: dict[Key, Ball], key: Key, value: Ball) -> None:
+    """Add a value to what a mapping has under a key."""
     old = total.get(key)
     total[key] = value if old is None else old + value

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from operator import mul
 
 from flint import arb_mat
 
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, entry, is_zero
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import weightless
-from core.multibody.laws.series import LawSeries
+from core.multibody.laws.series import LawSeries, convolved
 from core.multibody.table.table import Row, Table
 
 Series = list[Ball]
@@ -201,14 +200,14 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
         for (i, j), x in table.damping.items():
             right[i] = right[i] - x * rates[j][k]
         for (i, j, m), x in table.gyration.items():
-            right[i] = right[i] + x * _convolved(places[j][: k + 1], rates[m])
+            right[i] = right[i] + x * convolved(places[j][: k + 1], rates[m])
         laws.add_to(right, places, rates, k)
         for n in range(len(chosen)):
             for j, series in pushing[n].items():
-                right[j] = right[j] + _convolved(found[n], series.varying(k))
+                right[j] = right[j] + convolved(found[n], series.varying(k))
             total = ZERO
             for j, series in varying[n].items():
-                total = total + _convolved(series.varying(k + 1), rates[j])
+                total = total + convolved(series.varying(k + 1), rates[j])
             right[count + n] = right[count + n] - (k + 1) * total
         solved = (inverse * arb_mat([[x] for x in right])).entries() if right else []
         for i in range(count):
@@ -237,12 +236,12 @@ class _Turning:
             k = len(self._size)
             for slip, line in zip(self._slip, self._lines, strict=True):
                 slip.append(sum((poly[()] * self._rates[j][k] for j, poly in line.items()), ZERO))
-            square = sum((_convolved(s, s) for s in self._slip), ZERO)
+            square = sum((convolved(s, s) for s in self._slip), ZERO)
             # |s|^2 and s = |s| u, power by power.
-            inner = _convolved(self._size[1:], self._size[1:])
+            inner = convolved(self._size[1:], self._size[1:])
             self._size.append(square.sqrt() if k == 0 else (square - inner) / (2 * self._size[0]))
             for unit, slip in zip(self.units, self._slip, strict=True):
-                unit.append((slip[k] - _convolved(unit, self._size[1:])) / self._size[0])
+                unit.append((slip[k] - convolved(unit, self._size[1:])) / self._size[0])
         return self.units[0][power], self.units[1][power]
 
 
@@ -258,11 +257,6 @@ class _Entry:
         while len(self._known) < power:
             self._known.append(self._coefficient(len(self._known) + 1))
         return self._known[:power]
-
-
-def _convolved(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
-    """Return the sum of the products of which the last of a series of equal length meets the first of the other."""
-    return sum(map(mul, first, reversed(second)), ZERO)
 
 
 def _varying(line: LinearForm, places: Sequence[Series]) -> dict[int, _Entry]:

@@ -78,23 +78,23 @@ class LawSeries:
             case Op.SUBTRACT:
                 return values[a][k] - values[b][k]
             case Op.MULTIPLY:
-                return _convolved(values[a][: k + 1], values[b][: k + 1])
+                return convolved(values[a][: k + 1], values[b][: k + 1])
             case Op.DIVIDE:
-                return (values[a][k] - _convolved(values[b][1 : k + 1], own[:k])) / values[b][0]
+                return (values[a][k] - convolved(values[b][1 : k + 1], own[:k])) / values[b][0]
             case Op.ATAN2 if k == 0:
                 return arb.atan2(values[a][0], values[b][0])
             case Op.POWER if k == 0:
                 return values[a][0] ** self.tape.numbers[b]
             case Op.TANH_SLOPE:
                 tangent = values[number - 1][: k + 1]
-                return (ONE if k == 0 else ZERO) - _convolved(tangent, tangent)
+                return (ONE if k == 0 else ZERO) - convolved(tangent, tangent)
             case Op.LENGTH:
                 return _length(own, [values[i] for i in (a, b, c)], k)
         if k == 0:
             return FUNCTIONS[code](values[a][0])
         match code:
             case Op.ROOT:
-                return (values[a][k] - _convolved(own[1:k], own[1:k])) / (2 * own[0])
+                return (values[a][k] - convolved(own[1:k], own[1:k])) / (2 * own[0])
             case Op.EXP:
                 return _integrated(values[a], own, k)
             case Op.SINE | Op.SINH | Op.TANH:
@@ -112,7 +112,7 @@ class LawSeries:
         return total / (k * values[a][0])
 
 
-def _convolved(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
+def convolved(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
     """Return the sum of products of which the first of one series meets the last of the other."""
     return sum(map(mul, first, reversed(second)), ZERO)
 
@@ -130,10 +130,10 @@ def _length(own: Series, vector: Sequence[Series], k: int) -> Ball:
     leading = next((m for m in range(k + 1) if not all(is_zero(part[m]) for part in vector)), None)
     if leading is None:
         return ZERO
-    square = sum((_convolved(part[leading : k + 1], part[leading : k + 1]) for part in vector), ZERO)
+    square = sum((convolved(part[leading : k + 1], part[leading : k + 1]) for part in vector), ZERO)
     if k == leading:
         return square.sqrt()
-    return (square - _convolved(own[leading + 1 : k], own[leading + 1 : k])) / (2 * own[leading])
+    return (square - convolved(own[leading + 1 : k], own[leading + 1 : k])) / (2 * own[leading])
 
 
 def values_at(laws: Sequence[Law], q: Sequence[Ball], v: Sequence[Ball]) -> list[Ball]:

@@ -9,20 +9,16 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.directions import scalar_product
+from core.multibody.algebra.polynomials import Ball
 
 Axes = Sequence[Sequence[Ball]]
 """Components in space of the three body axes, or their rates."""
 
 
-def dot(a: Sequence[Ball], b: Sequence[Ball]) -> Ball:
-    """Return the scalar product of two vectors."""
-    return sum((x * y for x, y in zip(a, b, strict=True)), ZERO)
-
-
 def angular_velocity(axes: Axes, rates: Axes) -> list[Ball]:
     """Return the angular velocity in body axes (rad/s)."""
-    return [dot(rates[(k + 1) % 3], axes[(k + 2) % 3]) for k in range(3)]
+    return [scalar_product(rates[(k + 1) % 3], axes[(k + 2) % 3]) for k in range(3)]
 
 
 def quaternion(axes: Axes, root: Callable[[Ball], Ball] = arb.sqrt) -> list[Ball]:

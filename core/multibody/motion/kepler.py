@@ -23,6 +23,7 @@ from flint import arb, ctx
 from core.arrays import Floats
 from core.balls import Undetermined, precision
 from core.errors import AccuracyUnreachable
+from core.multibody.algebra.directions import scalar_product
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.motion.motion import BallState, Motion, States, in_pairs
 from core.multibody.table.table import Table
@@ -76,9 +77,9 @@ class Kepler(Motion):
     def constants(self) -> tuple[Ball, Ball, Ball]:
         """Distance, its product with its rate, and beta = 2 mu/r - v^2, which is positive for an ellipse."""
         place, rate = self.start
-        distance = _dot(place, place).sqrt()
-        beta = 2 * self.mu / distance - _dot(rate, rate)
-        return distance, _dot(place, rate), ZERO if is_zero(beta) else beta
+        distance = scalar_product(place, place).sqrt()
+        beta = 2 * self.mu / distance - scalar_product(rate, rate)
+        return distance, scalar_product(place, rate), ZERO if is_zero(beta) else beta
 
     @property
     def period(self) -> Ball | None:
@@ -92,7 +93,7 @@ class Kepler(Motion):
         """Whether the point moves along a line through the centre."""
         place, rate = self.start
         distance, product, _ = self.constants
-        return bool(is_zero(_dot(rate, rate) * distance * distance - product * product)) and bool(
+        return bool(is_zero(scalar_product(rate, rate) * distance * distance - product * product)) and bool(
             all(is_zero(product * x - y * distance * distance) for x, y in zip(place, rate, strict=True))
         )
 
@@ -273,7 +274,7 @@ def _around(measure: Poly, places: Sequence[int], length: int) -> tuple[Ball, ..
     if not all(is_zero(entry(measure, (i, i)) + lead) for i in places):
         return None
     centre = tuple(entry(measure, (i,)) / (2 * lead) for i in places)
-    return centre if is_zero(entry(measure, ()) + lead * _dot(centre, centre)) else None
+    return centre if is_zero(entry(measure, ()) + lead * scalar_product(centre, centre)) else None
 
 
 def stumpff(beta: Ball, s: Ball) -> tuple[Ball, Ball, Ball, Ball]:
@@ -349,7 +350,3 @@ def universal_in_doubles(product: float, mu: float, beta: float, time: float) ->
             return new
         s = new
     return s
-
-
-def _dot(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
-    return sum((x * y for x, y in zip(first, second, strict=True)), ZERO)

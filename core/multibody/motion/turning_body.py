@@ -13,7 +13,9 @@ from dataclasses import dataclass
 
 from flint import arb_mat
 
+from core.multibody.algebra.directions import scalar_product
 from core.multibody.algebra.polynomials import ZERO, Ball, entry, is_zero
+from core.multibody.motion.attitudes import angular_velocity
 from core.multibody.table.table import Table
 
 Vector = list[Ball]
@@ -70,8 +72,7 @@ def turning_body(table: Table) -> TurningBody | None:
     tensor = [[(trace if a == b else ZERO) - products[a][b] for b in range(3)] for a in range(3)]
     e = [table.q[3 * k : 3 * k + 3] for k in range(3)]
     rates = [table.v[3 * k : 3 * k + 3] for k in range(3)]
-    omega = [_dot(rates[(k + 1) % 3], e[(k + 2) % 3]) for k in range(3)]
-    omega = [ZERO if is_zero(x) else x for x in omega]
+    omega = [ZERO if is_zero(x) else x for x in angular_velocity(e, rates)]
     return TurningBody(tensor, arm if table.load else None, pull, e, omega)
 
 
@@ -117,10 +118,6 @@ def _rank_one(loads: Sequence[Vector]) -> tuple[Vector, Vector] | None:
     return arm, [ZERO if is_zero(x) else x for x in pull]
 
 
-def _dot(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
-    return sum((x * y for x, y in zip(first, second, strict=True)), ZERO)
-
-
 def cross_matrix(vector: Sequence[Ball]) -> list[Vector]:
     """Return the matrix of vector x."""
     x, y, z = vector
@@ -129,4 +126,4 @@ def cross_matrix(vector: Sequence[Ball]) -> list[Vector]:
 
 def product_of(first: Sequence[Vector], second: Sequence[Vector]) -> list[Vector]:
     """Return the product of two matrices."""
-    return [[_dot(row, [other[b] for other in second]) for b in range(3)] for row in first]
+    return [[scalar_product(row, [other[b] for other in second]) for b in range(3)] for row in first]

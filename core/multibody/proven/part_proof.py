@@ -14,12 +14,13 @@ from core.balls import Undetermined, precision
 from core.digits.adaptive_precision import working_bits
 from core.digits.decimals import decimal, floor_below, place_of
 from core.errors import NotApplicable
+from core.multibody.algebra.directions import scalar_product
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
 from core.multibody.answer import Energy
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import PartModel, SceneModel, SmallMotion
-from core.multibody.motion.attitudes import angular_velocity, dot, quaternion
+from core.multibody.motion.attitudes import angular_velocity, quaternion
 from core.multibody.motion.modelling import Modelled, Piece, modelled
 from core.multibody.motion.motion import BallState, Motion
 from core.multibody.motion.pendulum import plane_pendulum
@@ -208,7 +209,7 @@ class PartProof:
         return total
 
     def _vector(self, components: Sequence[Ball]) -> list[str]:
-        size = dot(components, components).sqrt()
+        size = scalar_product(components, components).sqrt()
         if not size > 0:
             if size.is_zero():
                 return ["0"] * len(components)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from core.multibody.algebra.polynomials import (
     ONE,
@@ -19,6 +18,7 @@ from core.multibody.algebra.polynomials import (
     Ball,
     LinearForm,
     Poly,
+    add_term,
     combined,
     degree,
     evaluated,
@@ -150,23 +150,23 @@ class Table:
 
     def add_mass(self, i: int, j: int, value: Ball) -> None:
         """Add to M, on both sides of its diagonal."""
-        _add(self.mass, (min(i, j), max(i, j)), value)
+        add_term(self.mass, (min(i, j), max(i, j)), value)
 
     def add_load(self, i: int, value: Ball) -> None:
         """Add to b."""
-        _add(self.load, i, value)
+        add_term(self.load, i, value)
 
     def add_stiffness(self, i: int, j: int, value: Ball) -> None:
         """Add to one entry of K."""
-        _add(self.stiffness, (i, j), value)
+        add_term(self.stiffness, (i, j), value)
 
     def add_damping(self, i: int, j: int, value: Ball) -> None:
         """Add to one entry of D."""
-        _add(self.damping, (i, j), value)
+        add_term(self.damping, (i, j), value)
 
     def add_gyration(self, i: int, j: int, k: int, value: Ball) -> None:
         """Add to one entry of B."""
-        _add(self.gyration, (i, j, k), value)
+        add_term(self.gyration, (i, j, k), value)
 
     @property
     def acting(self) -> list[Law]:
@@ -288,8 +288,3 @@ class Table:
 def identity(count: int) -> list[Poly]:
     """Return the expressions that change nothing."""
     return [{(i,): ONE} for i in range(count)]
-
-
-def _add(total: dict[Any, Ball], key: Any, value: Ball) -> None:
-    old = total.get(key)
-    total[key] = value if old is None else old + value
