@@ -136,7 +136,8 @@ class Numerals:
             If it is none, not finite, near or beyond the ends of the range of doubles, too long, or divides by zero.
         """
         found = self.instead[path] if path in self.instead else self._written(value, path)
-        if abs(found) > LARGEST or 0 < abs(found) < LEAST:
+        size = abs(found)
+        if size > LARGEST or 0 < size < LEAST:
             raise InvalidParameter(
                 path, "be zero or between 1e-300 and 1e300 in size", remedy="describe the scene in other units"
             )
@@ -154,7 +155,7 @@ class Numerals:
                 raise InvalidParameter((*path, "degrees"), "be a number or a formula")
             return self.number(inner, (*path, "degrees")) * arb.pi() / 180
         plain = isinstance(value, float) and isfinite(value) and not self.doubles
-        found = _decimal(repr(value)) if plain else _ball(_exact(value, path))
+        found = _decimal(repr(value)) if plain else _exact(value, path)
         if found != 0:
             self.read[path] = found
         return found + found * self.share if path in self.moved else found
@@ -218,28 +219,22 @@ def _circle(name: str, let: Mapping[str, object]) -> list[str]:
     return []
 
 
-def _exact(value: object, path: Path) -> Fraction:
+def _exact(value: object, path: Path) -> Ball:
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, Fraction)):
         raise InvalidParameter(path, "be a number")
-    if isinstance(value, Fraction):
-        return value
     if isinstance(value, int):
         if value.bit_length() > 4 * LARGEST_EXPONENT:
             raise InvalidParameter(path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
-        return Fraction(value)
+        return arb(value)
+    if isinstance(value, Fraction):
+        return arb(fmpq(value.numerator, value.denominator))
     if not isfinite(value):
         raise InvalidParameter(path, "be finite")
     if isinstance(value, float):
-        return Fraction(value)
+        return arb(value)
     if abs(value.adjusted()) > LARGEST_EXPONENT or len(value.as_tuple().digits) > MOST_DIGITS:
         raise InvalidParameter(path, f"have at most {MOST_DIGITS} digits and a moderate exponent")
-    return Fraction(value)
-
-
-def _ball(value: Fraction) -> Ball:
-    if value.denominator == 1:
-        return arb(value.numerator)
-    return arb(fmpq(value.numerator, value.denominator))
+    return arb(fmpq(*value.as_integer_ratio()))
 
 
 def _decimal(text: str) -> Ball:

@@ -108,8 +108,8 @@ class Modes(Motion):
 
     @property
     def is_faster_in_doubles(self) -> bool:
-        """Return that it is."""
-        return True
+        """Whether it is a sum over modes whose terms do not cancel."""
+        return len(self._terms_in_doubles([*self.table.q, *self.table.v, ONE])[0]) > 0
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
@@ -275,7 +275,8 @@ class Modes(Motion):
     def _terms_in_doubles(self, start: list[Ball]) -> tuple[Any, Any]:
         """Return roots and their vector coefficients in doubles, none where roots coincide or terms cancel."""
         if "doubles" not in self._known:
-            terms = self._terms(start) or []
+            with precision(_BITS):
+                terms = self._terms(start) or []
             roots = np.array([complex(root) for root, _ in terms], dtype=np.complex128)
             columns = np.array([[complex(x) for x in column] for _, column in terms], dtype=np.complex128)
             largest = max((abs(float(x)) for x in start), default=1.0)
