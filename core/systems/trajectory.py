@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from core.arrays import Floats, Integers
+from core.arrays import Floats, Integers, largest_magnitude, row_lengths
 from core.notices import Notice
 from core.quantities import Duration
 from core.systems.system import Model
@@ -53,13 +53,13 @@ class Column:
     @cached_property
     def largest(self) -> float:
         """Largest magnitude of a sample."""
-        greatest = float(np.max(np.abs(self.values), initial=0.0))
+        greatest = largest_magnitude(self.values)
         if self.values.ndim == 1:
             return greatest
         # In a power of two as unit, so that no square overflows.
         _, exponent = math.frexp(greatest)
-        size = np.linalg.norm(np.ldexp(self.values, -exponent), axis=1)
-        return float(np.max(size, initial=0.0)) * 2.0 ** (exponent - 1) * 2.0
+        size = row_lengths(np.ldexp(self.values, -exponent))
+        return float(size.max(initial=0.0)) * 2.0 ** (exponent - 1) * 2.0
 
 
 @dataclass(frozen=True)

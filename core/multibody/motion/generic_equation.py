@@ -27,7 +27,7 @@ from functools import cached_property
 
 import numpy as np
 
-from core.arrays import Floats, Integers
+from core.arrays import Floats, Integers, row_lengths
 from core.balls import precision
 from core.compiled import kernel
 from core.errors import NotApplicable
@@ -331,8 +331,8 @@ class SceneSystem:
         down = np.array([two_to(-e) for e in units.lengths])
         scale = np.concatenate([down, down * two_to(units.time)])
         states = np.concatenate([places, rates], axis=1) * scale
-        errors = np.linalg.norm(np.concatenate([wrong, wrong_rates], axis=1) * scale, axis=1)
-        rounding = 2.0**-52 * float(np.max(np.linalg.norm(states, axis=1)))
+        errors = row_lengths(np.concatenate([wrong, wrong_rates], axis=1) * scale)
+        rounding = 2.0**-52 * float(np.max(row_lengths(states)))
         return "closed form" if closed else "pairs of doubles", states, float(np.max(errors)) + rounding
 
 

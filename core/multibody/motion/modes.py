@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from flint import acb, acb_mat, arb, arb_mat, ctx
 
-from core.arrays import Floats
+from core.arrays import Floats, largest_magnitude
 from core.balls import precision
 from core.multibody.algebra.characteristic_roots import roots_but_zero
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degree, entry, is_zero
@@ -152,7 +152,7 @@ class Modes(Motion):
         start = [*self.table.q, *self.table.v, ONE]
         q, v = np.empty((len(times), n, 2)), np.empty((len(times), n, 2))
         errors = np.empty((len(times), 2 * n))
-        largest = float(np.max(np.abs(times), initial=0.0))
+        largest = largest_magnitude(times)
         size = max((float(abs(x)) for row in self.matrix for x in row), default=1.0)
         growth = math.log2(1.0 + size * largest) if size * largest < 1e300 else 1000.0
         # In whole steps, so that other times and bounds find the same roots.

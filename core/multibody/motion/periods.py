@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from flint import arb
 
-from core.arrays import Floats
+from core.arrays import Floats, largest_magnitude
 from core.balls import precision
 from core.compiled import kernel
 from core.double_double import Pair, dd_add, dd_add_d, dd_mul, dd_mul_d
@@ -102,8 +102,8 @@ class Periodic(Motion):
                 cosines = np.array([self._turn(k) for k in counts]).reshape(-1, 2, 2)
             for vector in (q, v, other, rate):
                 _rotate(cosines, vector)
-        fastest = float(np.max(np.abs(self.run.series[:, :, 1, 0]), initial=0.0))
-        hardest = 2.0 * float(np.max(np.abs(self.run.series[:, :, 2, 0]), initial=0.0))
+        fastest = largest_magnitude(self.run.series[:, :, 1, 0])
+        hardest = 2.0 * largest_magnitude(self.run.series[:, :, 2, 0])
         drift = (np.abs(counts) + 1.0) * late + np.abs(scaled) * 2.0**-104
         up = self.units.up
         down = two_to(-self.units.time)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from flint import arb
 
-from core.arrays import Floats
+from core.arrays import Floats, largest_magnitude
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, entry, is_zero
 from core.multibody.motion.motion import BallState, Motion, States, in_pairs
 from core.multibody.table.table import Table
@@ -86,7 +86,7 @@ class Turning(Motion):
     def in_doubles(self, times: Floats) -> tuple[Floats, Floats] | None:
         """Return coordinates and rates in doubles, None after so many radians that sines lose digits."""
         rate = float(self.rate)
-        if abs(rate) * float(np.max(np.abs(times), initial=0.0)) > FEW_RADIANS:
+        if abs(rate) * largest_magnitude(times) > FEW_RADIANS:
             return None
         n = len(self.table.q)
         q, v = np.empty((len(times), n)), np.empty((len(times), n))

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from flint import arb
 
-from core.arrays import Floats, Integers
+from core.arrays import Floats, Integers, largest_magnitude
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
@@ -221,7 +221,7 @@ class Whole:
 
     def misfit(self, q: Floats) -> float:
         """Return by how much the measures are missed at most, relative to the sum of their terms."""
-        worst, nothing = 0.0, _NO_TERM * float(np.max(np.abs(q), initial=0.0))
+        worst, nothing = 0.0, _NO_TERM * largest_magnitude(q)
         for row in self.measures.table.rows:
             if row.measure is not None:
                 value, size = values(row.measure, q)
@@ -258,7 +258,7 @@ class Whole:
         terms += [(i, abs(float(x)) * rate[j]) for (i, j), x in table.damping.items()]
         terms += [(i, abs(float(x)) * place[j] * rate[k]) for (i, j, k), x in table.gyration.items()]
         for law in table.acting:
-            pushed = float(np.max(np.abs(values_of(law, q, v)[0]), initial=0.0))
+            pushed = largest_magnitude(values_of(law, q, v)[0])
             terms += [(i, abs(float(x)) * pushed) for i, x in law.push.items()]
         power = 2 * units.time - units.action
         return self._of_each_row(max((float(np.ldexp(x, units.lengths[i] + power)) for i, x in terms), default=0.0))

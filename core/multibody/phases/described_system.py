@@ -69,7 +69,7 @@ class DescribedSystem:
         require_affordable(len(question.times), len(motion.base.measures.table.names))
         rows = np.array([k for k, t in enumerate(question.times) if self._is_reached(float(t))], dtype=np.int64)
         times = question.times[rows]
-        how, work = how_until(motion.phases, float(np.max(times, initial=0.0))), Work(len(times))
+        how, work = how_until(motion.phases, float(times.max(initial=0.0))), Work(len(times))
         # What leaves the range of doubles is refused.
         with np.errstate(over="ignore", invalid="ignore"):
             if question.integrator is None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.arrays import Floats
+from core.arrays import Floats, row_lengths
 from core.balls import precision
 from core.errors import MechanicsError, NotApplicable, Path
 from core.multibody.algebra.polynomials import BITS
@@ -79,7 +79,7 @@ def changes_in_phases(scene: Scene, columns: ColumnsInPhases, times: Floats, end
         more, less = (replace(columns, motion=other).at(times) for other in both)
         for name in own:
             away = (more[name].values - less[name].values) / (2.0 * MOVED)
-            total[name] += np.abs(away) if away.ndim == 1 else np.linalg.norm(away, axis=1)
+            total[name] += np.abs(away) if away.ndim == 1 else row_lengths(away)
     return ChangesInPhases(times, total)
 
 

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from itertools import zip_longest
 
-import numpy as np
-
 from core.errors import NotApplicable, SlackAtStart
 from core.multibody.algebra.doubles import error_in_doubles
 from core.multibody.algebra.polynomials import Ball
@@ -56,7 +54,7 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
     system = DescribedSystem(scene, motion, request.outputs)
     trajectory = request.solved(system)
     occurrences, extremes = (None, None) if trajectory is None else system.searched(request.times, request.accuracy)
-    model, accelerations, forces = _start_of(motion, float(np.max(request.times, initial=0.0)))
+    model, accelerations, forces = _start_of(motion, float(request.times.max(initial=0.0)))
     outputs, period = request.outputs, _period(motion)
     if period is not None and ends_within(motion.phases[0], float(period)):
         # What would repeat comes to an end, or its strings to another phase, before it does.
@@ -120,7 +118,7 @@ def _without_period(part: PartModel) -> PartModel:
 
 def _in_phases(scene: Scene, request: SceneRequest) -> PhaseMotion:
     _require_answerable(request)
-    motion = motion_in_phases(scene, float(np.max(request.times, initial=0.0)))
+    motion = motion_in_phases(scene, float(request.times.max(initial=0.0)))
     if motion.phases:
         follow_backwards(motion, request.times)
     return motion

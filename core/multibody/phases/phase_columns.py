@@ -53,7 +53,7 @@ class ColumnsInPhases:
         which = np.zeros(len(times), dtype=np.int64)
         if len(phases) > 1:
             which = np.array([phase_at(phases, float(t)) for t in times], dtype=np.int64)
-        how = how_until(phases, float(np.max(times, initial=0.0)))
+        how = how_until(phases, float(times.max(initial=0.0)))
         pieces = []
         for k in sorted(set(which.tolist())) or [0]:
             mine = np.flatnonzero(which == k)

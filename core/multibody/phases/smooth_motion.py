@@ -41,7 +41,7 @@ def smooth_motion(found: Modelled, times: Floats) -> PhaseMotion:
         return motion
     expansions = partial(expansions_of, phase)
     with np.errstate(over="ignore", invalid="ignore"):
-        first, last = float(np.min(times, initial=0.0)), float(np.max(times, initial=0.0))
+        first, last = float(times.min(initial=0.0)), float(times.max(initial=0.0))
         motion.before = first_event(found.whole, watched, first, expansions) if first < 0.0 else None
         ended = first_event(found.whole, watched, last, expansions) if last > 0.0 else None
     motion.events = [event for event in (motion.before, ended) if event is not None]

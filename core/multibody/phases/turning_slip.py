@@ -156,7 +156,7 @@ class TurningSlip(Motion):
 
     def by(self, kind: str, times: Floats) -> tuple[Floats, Floats]:
         """Return coordinates and rates by one run, each of shape (t, n, 2)."""
-        run = self.run(kind, float(np.max(times, initial=0.0)))
+        run = self.run(kind, float(times.max(initial=0.0)))
         n = len(self.table.names)
         q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
         with precision(_BITS):

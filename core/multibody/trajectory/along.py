@@ -9,7 +9,7 @@ from math import copysign
 import numpy as np
 from flint import arb
 
-from core.arrays import Floats
+from core.arrays import Floats, row_lengths
 from core.balls import precision
 from core.multibody.algebra.polynomials import BITS, ONE, Ball
 from core.multibody.laws.samples import values_of
@@ -87,7 +87,7 @@ def velocities_of(frames: Mapping[str, Frame]) -> dict[str, Callable[[State], Fl
 
 def speed_of(velocity: Callable[[State], Floats], state: State) -> Floats:
     """Return the length of a velocity in states, shape (t,)."""
-    speed: Floats = np.linalg.norm(velocity(state), axis=1)
+    speed: Floats = row_lengths(velocity(state))
     return speed
 
 

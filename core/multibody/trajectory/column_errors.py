@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.arrays import Floats
+from core.arrays import Floats, largest_magnitude, row_lengths
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.systems.trajectory import Column
 
@@ -26,11 +26,11 @@ def apart(column: Column, other: Column) -> float:
     """
     first, second = column.values, other.values
     if first.ndim == 1:
-        return float(np.max(np.abs(first - second), initial=0.0))
-    each = np.linalg.norm(first - second, axis=1)
+        return largest_magnitude(first - second)
+    each = row_lengths(first - second)
     if first.shape[1] == 4:
-        each = np.minimum(each, np.linalg.norm(first + second, axis=1))
-    return float(np.max(each, initial=0.0))
+        each = np.minimum(each, row_lengths(first + second))
+    return float(each.max(initial=0.0))
 
 
 def worst(columns: Mapping[str, Column]) -> float:

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from core.arrays import Floats
+from core.arrays import Floats, largest_magnitude, row_lengths
 from core.multibody.motion.attitudes import quaternions
 from core.multibody.motion.motion import States
 from core.multibody.motion.whole import Whole
@@ -108,7 +108,7 @@ class Columns:
         sizes: dict[str, float] = {}
         for k, force in enumerate(chosen):
             values, size = self.whole.force(force, q, v, multipliers)
-            sizes[force.name] = float(np.max(size, initial=0.0))
+            sizes[force.name] = float(size.max(initial=0.0))
             factors = [(row, float(np.max(values_of(poly, q)[1], initial=0.0))) for row, poly in force.terms]
             beside = sum(float(solved[row]) * factor for row, factor in factors)
             floor = sum(float(balanced[row]) * factor for row, factor in factors)
@@ -116,9 +116,9 @@ class Columns:
             sizes[force.name] = max(sizes[force.name], floor)
             if by_reference is not None:
                 other = self.whole.force(force, *by_reference)[0]
-                error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
+                error += 4.0 * largest_magnitude(values - other)
             # A force that is zero by symmetry is known as a share of those that are solved for with it.
-            small = error > ROUNDED * float(np.max(np.abs(values), initial=0.0))
+            small = error > ROUNDED * largest_magnitude(values)
             found[force.name] = Column(values, force.unit, error, self.how, scale=beside if small else None)
         for unit in {column.unit for column in found.values()}:
             alike = {name: column for name, column in found.items() if column.unit == unit}
@@ -161,11 +161,11 @@ class Columns:
         found: dict[str, Column] = {}
         for name, function in momenta(measures.table, measures.coordinates.frames, measures.momenta).items():
             values, size = function.at(self.states.q, self.states.v)
-            error = _SMALL * float(np.max(np.linalg.norm(size, axis=1), initial=0.0))
+            error = _SMALL * float(np.max(row_lengths(size), initial=0.0))
             error += float(self._moved(1, partial(_at, function))[0])
             if self.states.reference is not None:
                 other = function.at(*self.states.reference)[0]
-                error += 4.0 * float(np.max(np.linalg.norm(values - other, axis=1), initial=0.0))
+                error += 4.0 * float(np.max(row_lengths(values - other), initial=0.0))
             shown = values[:, 0] if values.shape[1] == 1 else values
             found[name] = Column(shown, function.unit, error, self.how)
         return found
@@ -181,9 +181,9 @@ class Columns:
         found: dict[str, Column] = {}
         for number, name in enumerate(("energy.kinetic", "energy.potential")):
             values, size = curves[0][number]
-            error = _SMALL * float(np.max(size, initial=0.0)) + floors[number] + float(moved[number])
+            error = _SMALL * float(size.max(initial=0.0)) + floors[number] + float(moved[number])
             if len(curves) > 1:
-                error += 4.0 * float(np.max(np.abs(values - curves[1][number][0]), initial=0.0))
+                error += 4.0 * largest_magnitude(values - curves[1][number][0])
             found[name] = Column(values, "J", error, self.how)
         return found
 
@@ -208,7 +208,7 @@ class Columns:
     def _energies_of_rounding(self) -> tuple[float, float]:
         """Return to what the energies are known where a coordinate or rate should be zero, and is not quite."""
         table = self.whole.measures.table
-        place, rate = (float(np.max(np.abs(x[..., 0]), initial=0.0)) for x in (self.states.q, self.states.v))
+        place, rate = (largest_magnitude(x[..., 0]) for x in (self.states.q, self.states.v))
         mass, load, stiffness = (
             sum(abs(float(value)) for value in entries.values())
             for entries in (table.mass, table.load, table.stiffness)
@@ -219,7 +219,7 @@ class Columns:
         where = list(indices)
         values = (self.states.v if rates else self.states.q)[:, where, 0]
         errors = (self.states.v_error if rates else self.states.q_error)[:, where]
-        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1), self.rounding), self.how)
+        return Column(values, unit, _stated(values, row_lengths(errors), self.rounding), self.how)
 
     def _scalar(self, index: int, unit: str, *, rates: bool) -> Column:
         values = (self.states.v if rates else self.states.q)[:, index, 0]
@@ -289,7 +289,7 @@ class Columns:
         rate = np.stack([self.states.v[:, list(axis), 0] for axis in axes], axis=1)
         omega = np.stack([np.einsum("ti,ti->t", rate[:, (k + 1) % 3], e[:, (k + 2) % 3]) for k in range(3)], axis=1)
         flat = [i for axis in axes for i in axis]
-        off, off_rate = (np.linalg.norm(x[:, flat], axis=1) for x in (self.states.q_error, self.states.v_error))
+        off, off_rate = (row_lengths(x[:, flat]) for x in (self.states.q_error, self.states.v_error))
         fast = np.linalg.norm(rate, axis=(1, 2))
         quaternion = quaternions(e)
         return {
@@ -304,5 +304,5 @@ def _at(function: StateFunction, q: Floats, v: Floats) -> Floats:
 
 
 def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
-    size = np.abs(values) if values.ndim == 1 else np.linalg.norm(values, axis=1)
-    return _MARGIN * float(np.max(errors, initial=0.0)) + rounding * float(np.max(size, initial=0.0))
+    size = np.abs(values) if values.ndim == 1 else row_lengths(values)
+    return _MARGIN * float(errors.max(initial=0.0)) + rounding * float(size.max(initial=0.0))

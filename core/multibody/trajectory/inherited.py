@@ -17,7 +17,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.arrays import Floats
+from core.arrays import Floats, largest_magnitude, row_lengths
 from core.errors import MechanicsError, NotApplicable, Path
 from core.multibody.algebra.rank import independent
 from core.multibody.language.numerals import SHIFT, Numerals
@@ -100,7 +100,7 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
         if now:
             growth = (
                 max(
-                    float(np.max(np.abs(slope), initial=0.0)) / max(float(np.max(np.abs(value), initial=0.0)), 1e-300)
+                    largest_magnitude(slope) / max(largest_magnitude(value), 1e-300)
                     for slope, value in zip(slopes, (places, rates), strict=True)
                     if np.any(slope)
                 )
@@ -112,7 +112,7 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
             whole = _moved(scene, found, paths, share)
             for name, column in follow(whole, times, States(state[0], state[1], nothing, nothing, None)).items():
                 away = (column.values - now[name].values) / share
-                derived[name] += np.abs(away) if away.ndim == 1 else np.linalg.norm(away, axis=1)
+                derived[name] += np.abs(away) if away.ndim == 1 else row_lengths(away)
     return Changes(found.whole, times, q, v, derived)
 
 

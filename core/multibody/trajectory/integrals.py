@@ -56,7 +56,7 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
     piece, error = np.zeros(len(low)), np.zeros(len(low))
     owner = np.arange(len(low))
     whole, _, size = _gauss(integrand, low, high)
-    largest = float(np.max(size, initial=0.0))
+    largest = float(size.max(initial=0.0))
     points = len(low) * len(_POINTS)
     for depth in range(_DEPTH):
         points += 2 * len(low) * len(_POINTS)
