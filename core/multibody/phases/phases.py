@@ -294,7 +294,7 @@ class _Run:
         first, tracks = crossings[0], self.tracks
         tracks.follow_scales(float(first.time), phase.tracks[0].q, first.q, phase.models[0].whole.acceleration)
         before = phase.tracks if len(phase.tracks) == len(crossings) else phase.tracks * len(crossings)
-        tracks.each = [Track(t.time + x.time, x.q, x.v) for t, x in zip(before, crossings, strict=True)]
+        tracks.each = [t.after(x.time, phase.still, x.q, x.v) for t, x in zip(before, crossings, strict=True)]
         wide = tracks.exact and tracks.width() > EXACT
         if wide and not self.last:
             raise _TooWide

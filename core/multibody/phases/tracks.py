@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from flint import arb
 
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 
 NEGLIGIBLE_RATE = 2.0**-180
@@ -29,6 +29,12 @@ class Track:
     time: Ball
     q: Vector
     v: Vector
+
+    def after(self, time: Ball, still: Sequence[bool], q: Vector, v: Vector) -> Track:
+        """Return the track at a state some time later: what rests is where it was, without the rounding of forces."""
+        places = [now if rests else x for rests, now, x in zip(still, self.q, q, strict=True)]
+        rates = [ZERO if rests else x for rests, x in zip(still, v, strict=True)]
+        return Track(self.time + time, places, rates)
 
     def bare(self) -> Track:
         """Return the track without the width of its balls."""
@@ -106,7 +112,7 @@ class Tracks:
         found = []
         for largest, vector in zip(self._largest, (self.first.q, self.first.v), strict=True):
             for unit, x in zip(self.units, vector, strict=True):
-                largest[unit] = max(largest.get(unit, 0.0), abs(float(x.mid())))
+                largest[unit] = max(largest.get(unit, 0.0), 0.0 if is_zero(x) else abs(float(x.mid())))
             found.append([largest[unit] for unit in self.units])
         return found[0], found[1]
 
@@ -161,7 +167,7 @@ class Tracks:
         for largest, vector, least in zip(self._largest, (q, v), (0.0, turning), strict=True):
             for i, (unit, x) in enumerate(zip(self.units, vector, strict=True)):
                 own = largest.get(unit, 0.0)
-                if abs(float(x)) <= NEGLIGIBLE_RATE * (own if unit == "m" else max(own, least)):
+                if abs(float(x)) <= NEGLIGIBLE_RATE * (own if unit in ("m", "s") else max(own, least)):
                     vector[i] = ZERO
 
     def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float | None = None) -> None:

@@ -28,6 +28,7 @@ from core.multibody.algebra.polynomials import (
     variables,
 )
 from core.multibody.laws.law import Law
+from core.multibody.laws.merged import merged
 from core.multibody.laws.series import values_at
 
 
@@ -281,7 +282,7 @@ class Table:
             for key in [key for key, value in clean.items() if ZERO in value]:
                 del clean[key]
         new.rows = [row.along(expressions) for row in self.rows]
-        new.laws = [law for law in (own.along(expressions) for own in self.acting) if law.push]
+        new.laws = merged(law.along(expressions) for law in self.acting)
         return new
 
 
