@@ -28,11 +28,11 @@ LARGEST_EXPONENT = 400
 """Of ten, in a number."""
 
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "abs")
-OF_TWO = ("atan2",)
-"""Functions of two arguments, where a caller knows them."""
+ARGUMENTS = {"atan2": 2, "min": 2, "max": 2, "sign": 1, "if": 3}
+"""Functions that a caller may know beside these, and how many arguments they have; if(c, a, b) is a for c > 0, or b."""
 _ALSO = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
 """Other names of functions."""
-NAMES_OF_FUNCTIONS = (*FUNCTIONS, *OF_TWO, *_ALSO)
+NAMES_OF_FUNCTIONS = (*FUNCTIONS, *ARGUMENTS, *_ALSO)
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?"
@@ -76,7 +76,7 @@ class Node:
     Attributes
     ----------
     kind : str
-        ``"number"``, ``"pi"``, ``"name"``, ``"negative"``, one of ``+ - * / ^``, or one of `FUNCTIONS` or `OF_TWO`.
+        ``"number"``, ``"pi"``, ``"name"``, ``"negative"``, one of ``+ - * / ^``, or one of `FUNCTIONS` or `ARGUMENTS`.
     text : str
         The digits of a number, or a name.
     inner : tuple of Node
@@ -101,7 +101,7 @@ class Arithmetic(Generic[T]):
     divide, power : callable
         Of two values.
     functions : mapping of str to callable
-        One for each of `FUNCTIONS`, and for those of `OF_TWO` that formulas may have.
+        One for each of `FUNCTIONS`, and for those of `ARGUMENTS` that formulas may have.
     """
 
     number: Callable[[str], T]
@@ -184,6 +184,11 @@ def value_of(node: Node, names: Mapping[str, T], arithmetic: Arithmetic[T]) -> T
     return found  # type: ignore[no-any-return]
 
 
+def names_of(node: Node) -> frozenset[str]:
+    """Return the names that occur in a part of a formula."""
+    return frozenset({node.text}) if node.kind == "name" else frozenset().union(*map(names_of, node.inner))
+
+
 def names_in(text: str) -> frozenset[str]:
     """Return what stands as a name or function in a text; nothing of what is no formula."""
     try:
@@ -264,7 +269,7 @@ class _Reader:
             return Node("pi")
         function = _ALSO.get(name, name)
         if function in self.functions:
-            return Node(function, inner=self._arguments(2 if function in OF_TWO else 1))
+            return Node(function, inner=self._arguments(ARGUMENTS.get(function, 1)))
         shown, remedy = name[:64], self._remedy(name)
         raise UnknownName((), f'use known names, unlike "{shown}"', remedy=remedy, name=shown)
 

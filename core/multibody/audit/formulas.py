@@ -17,6 +17,13 @@ Read = Callable[[Placement, Motion], Numbers]
 SHARE = 2.0**-20
 """Share of an input by which it is moved to see its effect: the effect is then known to some 1e-6 of itself."""
 
+
+def _chosen(condition: Numbers, one: Numbers, other: Numbers) -> Numbers:
+    """Return one value where a condition is positive, and else another."""
+    found: Numbers = np.where(condition > 0.0, one, other)
+    return found
+
+
 _DOUBLES = Arithmetic[Numbers](
     lambda text: np.array(float(text)),
     lambda: np.array(np.pi),
@@ -36,6 +43,11 @@ _DOUBLES = Arithmetic[Numbers](
         "exp": np.exp,
         "log": np.log,
         "atan2": np.arctan2,
+        "abs": np.abs,
+        "sign": np.sign,
+        "min": np.minimum,
+        "max": np.maximum,
+        "if": _chosen,
         LENGTH: lambda *vector: np.sqrt(sum(x * x for x in vector)),
     },
 )

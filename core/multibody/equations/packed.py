@@ -134,6 +134,10 @@ def _two(power: int) -> Ball:
     return (ZERO + 2) ** power
 
 
+AT_ORIGIN = -32
+"""Exponent of two of the share of its way within which a place is at the origin: events leave far less of it."""
+
+
 def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     """Return units in which coordinates, rates and masses are of the order of one."""
     sizes = [exponent(x) for i, x in enumerate(table.q) if table.units[i] == "m"]
@@ -148,13 +152,14 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         times.append(-turn)
     if spin is not None:
         times.append(-(spin // 2))
-    if size is None:
-        # What starts at the origin is measured by how far it comes until it turns back, or something else has turned.
-        ways = []
-        if rate is not None and pull is not None:
-            ways.append(2 * rate - pull)
-        if times and (rate is not None or pull is not None):
-            ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
+    # What starts at the origin, or as near to it as rounding leaves an event, is measured by how far it comes until it
+    # turns back, or something else has turned.
+    ways = []
+    if rate is not None and pull is not None:
+        ways.append(2 * rate - pull)
+    if times and (rate is not None or pull is not None):
+        ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
+    if size is None or (ways and size < min(ways) + AT_ORIGIN):
         size = min(ways, default=None)
     size = 0 if size is None else size
     if rate is not None:

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from core.errors import InvalidParameter, Path
-from core.formulas import FUNCTIONS, OF_TWO, Formula, Node, names_in
+from core.formulas import ARGUMENTS, FUNCTIONS, Formula, Node, names_in, names_of
 from core.multibody.language.body import SceneBody
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.written import Number
@@ -29,8 +29,8 @@ LENGTH = "length of"
 MOST_NODES = 1000
 """Numbers, names and operations of a formula with all that it uses in `let`."""
 
-MOTION_FUNCTIONS = tuple(name for name in (*FUNCTIONS, *OF_TWO) if name != "abs")
-"""Functions of formulas of the motion: those that have a Taylor series wherever they are defined."""
+MOTION_FUNCTIONS = (*FUNCTIONS, *ARGUMENTS)
+"""Functions of formulas of the motion."""
 
 
 @dataclass(frozen=True)
@@ -102,8 +102,7 @@ class _Expanding:
 
     def of(self, text: str) -> MotionFormula:
         root = self._read(text)
-        found = {node.text for node in _leaves(root)} - set(self.numerals.let)
-        return MotionFormula(root, frozenset(found))
+        return MotionFormula(root, names_of(root) - set(self.numerals.let))
 
     def _read(self, text: str) -> Node:
         known = [*self.numerals.let, *self.numerals.formulas, *self.names]
@@ -126,13 +125,6 @@ class _Expanding:
             return node
         rates = [f"{place}.v{axis}" if place else f"v{axis}" for axis in "xyz"]
         return Node(LENGTH, inner=tuple(Node("name", rate) for rate in rates if rate in self.names))
-
-
-def _leaves(node: Node) -> Iterator[Node]:
-    if node.kind == "name":
-        yield node
-    for inner in node.inner:
-        yield from _leaves(inner)
 
 
 def references(values: Iterable[object], bodies: Iterable[str], let: Mapping[str, Number]) -> Iterator[tuple[str, str]]:

@@ -282,6 +282,7 @@ BALLS = Arithmetic[Ball](
     _quotient,
     _power,
     {name: abs if name == "abs" else getattr(arb, name) for name in FUNCTIONS}
-    | {"atan2": arb.atan2, "sqrt": _root, "asin": _of_a_sine(arb.asin), "acos": _of_a_sine(arb.acos)},
+    | {"atan2": arb.atan2, "sqrt": _root, "asin": _of_a_sine(arb.asin), "acos": _of_a_sine(arb.acos)}
+    | {"min": arb.min, "max": arb.max, "sign": arb.sgn, "if": lambda c, a, b: a if c > 0 else b},
 )
 """Formulas in balls of the precision of the context."""

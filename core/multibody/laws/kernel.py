@@ -29,14 +29,15 @@ NUMBER, PLACE, RATE, ADD, SUBTRACT, MULTIPLY, DIVIDE = map(
 )
 ROOT, EXP, SINE, COSINE, SINH, COSH = map(int, (Op.ROOT, Op.EXP, Op.SINE, Op.COSINE, Op.SINH, Op.COSH))
 LOG, ASIN, ATAN, ATAN2, POWER, LENGTH = map(int, (Op.LOG, Op.ASIN, Op.ATAN, Op.ATAN2, Op.POWER, Op.LENGTH))
-TANH, TANH_SLOPE = int(Op.TANH), int(Op.TANH_SLOPE)
+TANH, TANH_SLOPE, SIGN, CHOICE = map(int, (Op.TANH, Op.TANH_SLOPE, Op.SIGN, Op.CHOICE))
 
 LARGEST_TANGENT = 40.0
 """Argument from which on a hyperbolic tangent is one to pairs of doubles: it differs by 2 exp(-80)."""
 
 
-PROBES, HALVINGS = 16, 54
-"""Times in a step at which a length is looked at for a zero, and halvings of the time between two: those of doubles."""
+AT_ZERO = 2.0**-44
+"""Time in the units of a table within which a vector is at its zero. As the length is as small there, a force differs
+by the square of this."""
 
 
 class PackedLaws(NamedTuple):
@@ -94,15 +95,29 @@ def _root(values: Floats, own: int, leading: int, square: Pair, k: int) -> Pair:
 
 
 @kernel()
-def _length(values: Floats, own: int, operation: Integers, k: int, course: Floats) -> Pair:
-    """Return coefficient k of the length of a vector, which may grow from zero: then as |t|^m with a power of time."""
-    a, b, c, way = operation[1], operation[2], operation[3], course[0]
-    # What has just been followed to its zero has the rounding of it as its first coefficient.
-    leading = int(course[1 + own])
-    while leading <= k:
-        if values[a, leading, 0] != 0.0 or values[b, leading, 0] != 0.0 or values[c, leading, 0] != 0.0:
-            break
+def _square(values: Floats, operation: Integers, k: int) -> float:
+    """Return the square of coefficient k of a vector."""
+    a, b, c = values[operation[1], k, 0], values[operation[2], k, 0], values[operation[3], k, 0]
+    return float(a * a + b * b + c * c)
+
+
+@kernel()
+def leading_power(values: Floats, operation: Integers, k: int) -> int:
+    """Return the power up to k with which a vector begins to grow, one more where it does not."""
+    leading = 0
+    while leading <= k and _square(values, operation, leading) == 0.0:
         leading += 1
+    # What has been followed to its zero has the rounding of it as its first coefficient.
+    if leading == 0 < k and _square(values, operation, 0) < AT_ZERO**2 * _square(values, operation, 1):
+        return 1
+    return leading
+
+
+@kernel()
+def _length(values: Floats, own: int, operation: Integers, k: int, way: float) -> Pair:
+    """Return coefficient k of the length of a vector, which may grow from zero: then as |t|^m with a power of time."""
+    a, b, c = operation[1], operation[2], operation[3]
+    leading = leading_power(values, operation, k)
     if leading > k:
         return 0.0, 0.0
     sh, sl = _convolved(values, a, leading, a, k, k - leading + 1)
@@ -181,14 +196,34 @@ def _input(laws: PackedLaws, path: Floats, size: int, operation: Integers, k: in
 def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, course: Floats, values: Floats) -> None:
     """Fill in coefficient k of every operation, the earlier ones being known.
 
+    The sign of what is zero at first, and does not depend on rates, is that of its rate.
+
     Parameters
     ----------
     path : (planes, orders * size)
         Coefficients of the coordinates, each order at k size, known up to k + 1.
     course : (1 + o,)
-        Sign of the times that follow, and 1 for every length that is zero at the start of the series.
+        Sign of the times that follow; then the signs that follow of what is zero at the start of the series.
     values : (o, orders, 2)
     """
+    _formed(laws, path, size, k, course, values)
+    if k > 0 or values.shape[1] == 1:
+        return
+    grows = False
+    for o in range(laws.operations.shape[0]):
+        grows = grows or (laws.operations[o, 0] == SIGN and laws.operations[o, 3] == 0 and values[o, 0, 0] == 0.0)
+    if grows:
+        _formed(laws, path, size, 1, course, values)
+        for o in range(laws.operations.shape[0]):
+            rate = values[laws.operations[o, 1], 1, 0]
+            if laws.operations[o, 0] == SIGN and laws.operations[o, 3] == 0 and values[o, 0, 0] == 0.0 and rate != 0.0:
+                course[1 + o] = math.copysign(1.0, rate * course[0])
+        _formed(laws, path, size, 0, course, values)
+
+
+@kernel()
+def _formed(laws: PackedLaws, path: Floats, size: int, k: int, course: Floats, values: Floats) -> None:
+    """Fill in coefficient k of every operation."""
     for o in range(laws.operations.shape[0]):
         operation = laws.operations[o]
         code, a, b, c, d = operation[0], operation[1], operation[2], operation[3], operation[4]
@@ -211,8 +246,16 @@ def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, course: Fl
         elif code == TANH_SLOPE:
             ph, pl = _convolved(values, o - 1, 0, o - 1, k, k + 1)
             sh, sl = dd_add(1.0 if k == 0 else 0.0, 0.0, -ph, -pl)
+        elif code == SIGN:
+            if k == 0:
+                sh = course[1 + o]
+                if sh == 0.0:
+                    sh = math.copysign(1.0, values[a, 0, 0]) if values[a, 0, 0] != 0.0 else float(b)
+        elif code == CHOICE:
+            chosen = b if values[a, 0, 0] > 0.0 else c
+            sh, sl = values[chosen, k, 0], values[chosen, k, 1]
         elif code == LENGTH:
-            sh, sl = _length(values, o, operation, k, course)
+            sh, sl = _length(values, o, operation, k, course[0])
         elif code == POWER:
             sh, sl = _power(values, laws, o, a, b, k)
         elif code in (SINE, SINH):
@@ -243,83 +286,3 @@ def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, course: Fl
         else:
             sh, sl = _integrated(values, a, b, k)
         values[o, k, 0], values[o, k, 1] = sh, sl
-
-
-@kernel()
-def _value(values: Floats, part: int, time: float) -> float:
-    """Return a series at a time, in doubles."""
-    total = 0.0
-    for k in range(values.shape[1] - 1, -1, -1):
-        total = total * time + values[part, k, 0]
-    return total
-
-
-@kernel()
-def _along_a_line(values: Floats, operation: Integers) -> int:
-    """Return the only component of a vector that is not zero for good, -1 where there are more or none."""
-    found = -1
-    for part in operation[1:4]:
-        for k in range(values.shape[1]):
-            if values[part, k, 0] != 0.0:
-                if found >= 0 and found != part:
-                    return -1
-                found = part
-                break
-    return found
-
-
-@kernel()
-def _vanishes(values: Floats, o: int) -> bool:
-    """Return whether all coefficients of an operation are zero."""
-    k, known = 0, values.shape[1] - 2
-    while k < known and values[o, k, 0] == 0.0:
-        k += 1
-    return bool(k == known)
-
-
-@kernel()
-def _begins_later(values: Floats, o: int, a: int, b: int) -> bool:
-    """Return whether a product of two series that do not vanish has no coefficient yet."""
-    return _vanishes(values, o) and not _vanishes(values, a) and not _vanishes(values, b)
-
-
-@kernel()
-def until_zero(laws: PackedLaws, values: Floats, h: float, course: Floats) -> float:
-    """Return the part of a step up to the first zero of a length along a line, where it has a corner; else the step.
-
-    It is not a number where a product begins beyond the order of the series, which then says nothing of it.
-
-    The marks of lengths in `course` are set where they are zero at the end of that part, and removed elsewhere.
-    """
-    best = h
-    for o in range(laws.operations.shape[0]):
-        operation = laws.operations[o]
-        if operation[0] == MULTIPLY and _begins_later(values, o, operation[1], operation[2]):
-            return math.nan
-        if operation[0] != LENGTH:
-            continue
-        course[1 + o] = 0.0
-        part = _along_a_line(values, laws.operations[o])
-        if part < 0:
-            continue
-        leading = 0
-        while values[o, leading, 0] == 0.0 and leading < values.shape[1] - 1:
-            leading += 1
-        sign = 1.0 if values[o, leading, 0] * values[part, leading, 0] > 0.0 else -1.0
-        low = 0.0
-        for j in range(1, PROBES + 1):
-            high = h * j / PROBES
-            if sign * _value(values, part, high) < 0.0:
-                for _ in range(HALVINGS):
-                    middle = 0.5 * (low + high)
-                    if sign * _value(values, part, middle) < 0.0:
-                        high = middle
-                    else:
-                        low = middle
-                if abs(high) < abs(best):
-                    best = high
-                    course[1:] = 0.0
-                    course[1 + o] = 1.0
-                break
-            low = high
-    return best

@@ -36,7 +36,7 @@ class Rounded:
         return Rounded(self.value * other.value, self.size * other.size)
 
 
-def _exactly(value: float) -> Rounded:
+def _exactly(value: float | Floats) -> Rounded:
     return Rounded(np.array(value), np.abs(np.array(value)))
 
 
@@ -66,6 +66,10 @@ def _atan2(y: Rounded, x: Rounded) -> Rounded:
     return Rounded(value, np.abs(value) + (np.abs(x.value) * y.size + np.abs(y.value) * x.size) / square)
 
 
+def _chosen(first: Floats, one: Rounded, other: Rounded) -> Rounded:
+    return Rounded(np.where(first, one.value, other.value), np.where(first, one.size, other.size))
+
+
 def _length(*vector: Rounded) -> Rounded:
     value: Floats = np.sqrt(sum(part.value**2 for part in vector))
     return Rounded(value, sum((part.size for part in vector), value))
@@ -90,6 +94,11 @@ ROUNDED = Arithmetic[Rounded](
         "exp": _function(np.exp, np.exp),
         "log": _function(np.log, lambda x: 1.0 / x),
         "atan2": _atan2,
+        "abs": lambda x: Rounded(np.abs(x.value), x.size),
+        "sign": lambda x: _exactly(np.sign(x.value)),
+        "min": lambda x, y: _chosen(x.value < y.value, x, y),
+        "max": lambda x, y: _chosen(x.value > y.value, x, y),
+        "if": lambda condition, x, y: _chosen(condition.value > 0.0, x, y),
         LENGTH: _length,
     },
 )

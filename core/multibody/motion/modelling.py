@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.balls import precision
 from core.errors import InvalidParameter, NotApplicable
@@ -12,6 +13,7 @@ from core.multibody.assembly.assembled_scene import assembled
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.equations.dynamics import accelerations, parts, restricted, singular_row
 from core.multibody.equations.expansion import expansion
+from core.multibody.equations.starting_signs import with_starting_signs
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.motion.euler_poisson import EulerPoisson
@@ -118,6 +120,7 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
 
 def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
     """Return the models of a table whose start meets its rows."""
+    found = _switched(found)
     small = _upright(found)
     pieces, accelerations, full = _start_of(found, small)
     turned = _turned(found, small, full)
@@ -128,6 +131,16 @@ def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled
     dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
     whole = Whole(found.measures, small, full, accelerations, motions, dropped)
     return Modelled(found, whole, pieces, moved, fitted)
+
+
+def _switched(found: Described) -> Described:
+    """Return a scene whose formulas of several pieces know on which of them it begins."""
+    table = with_starting_signs(found.measures.table)
+    if table is found.measures.table:
+        return found
+    measures = copy.copy(found.measures)
+    measures.table = table
+    return replace(found, measures=measures)
 
 
 def _start_of(found: Described, small: Reduced) -> tuple[list[Piece], list[Ball], list[Ball]]:

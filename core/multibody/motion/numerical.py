@@ -12,7 +12,7 @@ from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
 from core.multibody.motion.motion import Motion, States
-from core.multibody.motion.series import DONE, FULL, LOST, advance, placed, sampled
+from core.multibody.motion.series import DONE, FULL, LOST, STUCK, advance, placed, sampled
 from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
 from core.multibody.table.table import Table
 
@@ -269,6 +269,16 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
             raise BudgetExceeded("steps", steps, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
     if ended == LOST:
         raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
+    if ended == STUCK:
+        time = clock[0] * two_to(units.time)
+        raise AccuracyUnreachable(
+            None,
+            np.inf,
+            f"a formula does not say how the motion goes on from {time:.10g} s: either side of the zero on which it "
+            "depends leads back to it, or it begins with a power of time beyond those of the series",
+            path=("times",),
+            remedy="ask for earlier times, or describe friction that holds what is at rest by a contact",
+        )
     starts.append(clock[None, :].copy())
     if not steps:
         # A run of no duration has one step, so that the start can be evaluated.

@@ -127,7 +127,7 @@ def products_of(table: Packed, order: int, planes: int) -> Products:
 
 @kernel()
 def _forwards(count: int) -> Floats:
-    """Return the course of laws whose times grow, and of which no length is zero."""
+    """Return the course of laws whose times grow, and of which nothing is zero."""
     found = np.zeros(1 + count)
     found[0] = 1.0
     return found

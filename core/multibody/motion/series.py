@@ -26,7 +26,8 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
 from core.multibody.equations.packed import FORCES, Packed
 from core.multibody.equations.saddle import Saddle, inverted, saddle_space
-from core.multibody.laws.kernel import until_zero, values_of_laws
+from core.multibody.laws.corners import until_corner
+from core.multibody.laws.kernel import values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread, started, summed
 
 SHORTEST = 1e-12
@@ -35,8 +36,9 @@ EARLY = 6
 """Highest power by which a motion that begins with it is measured though lower ones are there by rounding: what begins
 to slip under a force that grows begins with the third."""
 
-DONE, FULL, SINGULAR, LOST = 0, 1, 2, 3
-"""How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles."""
+DONE, FULL, SINGULAR, LOST, STUCK = 0, 1, 2, 3, 4
+"""How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles, or
+where a formula does not say how the motion goes on."""
 
 
 @kernel()
@@ -263,9 +265,9 @@ def advance(
         if abs(h) >= abs(left):
             h = left
         if table.laws.operations.shape[0] > 0:
-            h = until_zero(table.laws, products.laws, h, products.course)
+            h = until_corner(table.laws, products.laws, h, products.course, clock[0])
             if not abs(h) >= 0.0:
-                return LOST, step
+                return STUCK, step
         for b in range(0, n, WIDTH):
             moved, rate, by = alike(0.0), alike(0.0), alike(h)
             for k in range(order, 2, -1):

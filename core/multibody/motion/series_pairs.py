@@ -19,9 +19,20 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.equations.packed import Packed
 from core.multibody.equations.saddle import CORRECTED, FAILED, Saddle, inverted_pairs, padded, saddle_space
-from core.multibody.laws.kernel import PackedLaws, until_zero, values_of_laws
+from core.multibody.laws.corners import until_corner
+from core.multibody.laws.kernel import PackedLaws, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread_pairs, started, summed_pairs
-from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, SINGULAR, coefficients, lowest_bound, step_size
+from core.multibody.motion.series import (
+    DONE,
+    FULL,
+    LOST,
+    SHORTEST,
+    SINGULAR,
+    STUCK,
+    coefficients,
+    lowest_bound,
+    step_size,
+)
 
 LAST_DIGITS = 43.0
 """Bits of the coefficients of highest order for which doubles suffice: ten less than they have."""
@@ -265,9 +276,9 @@ def advance_pairs(
         if abs(h) >= abs(left):
             h = left
         if table.laws.operations.shape[0] > 0:
-            h = until_zero(table.laws, products.laws, h, products.course)
+            h = until_corner(table.laws, products.laws, h, products.course, clock[0])
             if not abs(h) >= 0.0:
-                return LOST, step
+                return STUCK, step
         _moved(path, size, h, moved)
         for i in range(n):
             q[i, 0], q[i, 1] = moved[0, 0, i], moved[0, 1, i]

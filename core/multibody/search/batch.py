@@ -54,8 +54,11 @@ def segments(own: Signs, number: int) -> list[tuple[float, int]]:
 
 
 def usual_length(natural: Floats, lengths: Floats) -> float:
-    """Return a length that most pieces could have at least, a power of two as theirs are."""
+    """Return a length that most pieces could have at least, a power of two as theirs are; 0 if corners end them all."""
     # What is a polynomial exactly could be followed for ever.
     longest = 2.0 * float(lengths.max())
-    found = min(float(np.sort(natural)[int(_USUAL * len(natural))]), longest)
+    whole = np.sort(natural[natural >= lengths])
+    if not len(whole):
+        return 0.0
+    found = min(float(whole[int(_USUAL * len(whole))]), longest)
     return float(2.0 ** math.floor(math.log2(found)))

@@ -180,22 +180,36 @@ class Followed:
             raise BudgetExceeded(what, needed, MOST_PIECES, path=("times",), remedy="ask for a shorter time")
         self._at_once = min(4 * self._at_once, _AT_ONCE)
         batch = self._batch(ahead, closely=closely)
+        expanded: list[Interval] = []
         for number, one in enumerate(ahead):
+            expanded.append(one)
+            if batch.natural[number] < min(batch.lengths[number], one.reach):
+                # The piece ends at a corner.
+                until, end = later(one.start, float(batch.natural[number])), one.start + one.reach
+                one.reach = float(batch.natural[number])
+                if one.start < until < end:
+                    expanded.append(Interval(until, end - until, closely=one.closely))
             if closely or batch.plain[number]:
                 one.batch, one.number = batch, number
             else:
                 one.closely = True
         self._last = batch.usual
-        self._left.extend(reversed(ahead))
+        self._left.extend(reversed(expanded))
 
     def _batch(self, ahead: Sequence[Interval], *, closely: bool) -> Batch:
         """Return pieces, and what every quantity does on them."""
         times, until = np.array([one.start for one in ahead]), np.array([one.reach for one in ahead])
         pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
+        cut = [np.where(each.cut, each.natural, np.inf) for each in pieces]
+        if np.isfinite(cut).any():
+            # Computations that are a little apart have a corner at different times, and one of them a short piece.
+            shortest = np.minimum.reduce([np.abs(each.lengths) for each in pieces])
+            pieces = [each.shortened(shortest) for each in pieces]
         lengths = np.abs(pieces[0].lengths)
         if not np.isfinite(lengths).all():
             raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))
-        share = np.minimum(until / lengths, 1.0)
+        natural = np.minimum.reduce([pieces[0].natural, *cut])
+        share = np.minimum(np.minimum(until, natural) / lengths, 1.0)
         plain, of = np.ones(len(times), dtype=bool), {}
         remaining = []
         for watch in self.watched:
@@ -218,7 +232,7 @@ class Followed:
             plain &= (counts == 1) & (known | (signs[:, 0] == NEGATIVE) if self.every else known)
             of[watch.index] = Signs(values, counts, ends, signs)
         self.watched = remaining
-        return Batch(lengths, pieces[0].natural, usual_length(pieces[0].natural, lengths), plain, of)
+        return Batch(lengths, natural, usual_length(natural, lengths), plain, of)
 
     def _divided(self, watch: WatchedSign, values: Floats, rounded: Floats, band: Floats) -> tuple[Floats, Floats, int]:
         """Return the only piece of a quantity at time zero, with what is zero there but for rounding divided out.

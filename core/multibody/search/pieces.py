@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.errors import AccuracyUnreachable, NotApplicable
@@ -37,7 +38,7 @@ class Pieces:
     lengths : ndarray, shape (p,)
         In seconds, negative where time runs backwards; powers of two.
     natural : ndarray, shape (p,)
-        How long they could be, were no more of interest.
+        How long they could be, were no more of interest; less than their lengths where a corner ends them.
     places, multipliers : ndarrays, shape (p, n, order + 1, 2) and (p, rows, order - 1, 2)
         Coefficients of powers of time as a share of the length.
     place_sizes, multiplier_sizes : ndarrays, shape (p, n, order + 1) and (p, rows, order - 1)
@@ -55,6 +56,26 @@ class Pieces:
     def shape(self) -> tuple[int, int]:
         """Intervals, and coefficients of a curve."""
         return len(self.lengths), COEFFICIENTS
+
+    @property
+    def cut(self) -> NDArray[np.bool_]:
+        """Which pieces end at a corner of a formula, shape (p,)."""
+        found: NDArray[np.bool_] = self.natural < np.abs(self.lengths)
+        return found
+
+    def shortened(self, lengths: Floats) -> Pieces:
+        """Return the pieces with other lengths, shape (p,), that are no longer and powers of two as well."""
+        ratio = lengths / np.abs(self.lengths)
+        powers = ratio[:, None, None] ** np.arange(self.places.shape[2])
+        own = powers[..., : self.multipliers.shape[2]]
+        return Pieces(
+            ratio * self.lengths,
+            self.natural,
+            self.places * powers[..., None],
+            self.place_sizes * powers,
+            self.multipliers * own[..., None],
+            self.multiplier_sizes * own,
+        )
 
     def place(self, i: int) -> Curve:
         """Return a coordinate."""

@@ -15,15 +15,15 @@ from core.compiled import kernel
 from core.double_double import dd_mul_d
 from core.multibody.equations.packed import FORCES, Packed
 from core.multibody.equations.saddle import FAILED, Saddle, inverted_pairs, saddle_space
-from core.multibody.laws.kernel import until_zero
+from core.multibody.laws.corners import until_corner
 from core.multibody.motion.products import Products, products_of, started
 from core.multibody.motion.series import lowest_bound, step_size
 from core.multibody.motion.series_pairs import coefficients_pairs, entries_of_lines_pairs
 
 ORDER = 22
 """Highest power of the coordinates; multipliers have two less."""
-NEAR = 2.0**-30
-"""Share of a step within which a corner is taken to be at its start: the force of a speed is then off by 2^-60."""
+NEAR = 2.0**-44
+"""Share of a step within which a corner is taken to be at its start."""
 TOLERANCE = 2.0**-50
 """Share of the motion that the last powers are over a piece: a third of the radius of convergence."""
 
@@ -42,20 +42,21 @@ def _step(table: Packed, products: Products, own: Floats, group: Integers) -> fl
 
 
 @kernel()
-def _to_corner(table: Packed, space: Saddle, products: Products, own: Floats, group: Integers, step: float) -> float:
-    """Return the part of a step up to a corner of a formula; the series is that beyond a corner that is near.
-
-    What lies between the state and a corner that is near has a force that is smaller than all others by `NEAR`.
-    """
+def _to_corner(
+    table: Packed, space: Saddle, products: Products, own: Floats, group: Integers, step: float, longest: float
+) -> tuple[float, float]:
+    """Return a step, and its part up to a corner of a formula; the series is that beyond a corner that is near."""
     course, order = products.course, own.shape[1] - 1
-    found = abs(until_zero(table.laws, products.laws, course[0] * step, course))
-    if found < NEAR * step:
+    within = min(step, longest)
+    found = abs(until_corner(table.laws, products.laws, course[0] * within, course, 0.0))
+    if found < NEAR * within:
         started(table, products)
         coefficients_pairs(table, space, products, order - 1)
         step = _step(table, products, own, group)
-        found = abs(until_zero(table.laws, products.laws, course[0] * step, course))
+        within = min(step, longest)
+        found = abs(until_corner(table.laws, products.laws, course[0] * within, course, 0.0))
     course[1:] = 0.0
-    return min(step, found)
+    return step, found if found < within else step
 
 
 @kernel()
@@ -84,7 +85,7 @@ def expand(
     lengths : (t,)
         Filled with the lengths of the pieces (s): powers of two, no longer than the least ones that cover the reach.
     steps : (t,)
-        Filled with the times over which the last coefficients are small (s).
+        Filled with the times over which the last coefficients are small, or up to a corner of a formula (s).
     series : (t, n + m, order + 1, 2)
         Filled with coefficients of powers of time as a share of the length, those of coordinates in SI units;
         multipliers have two less.
@@ -110,16 +111,18 @@ def expand(
             path[0, size + i], path[1, size + i] = v[s, i, 0], v[s, i, 1]
         started(table, products)
         coefficients_pairs(table, space, products, order - 1)
-        step = _step(table, products, own, group)
-        if table.laws.operations.shape[0] > 0:
-            step = _to_corner(table, space, products, own, group, step)
-        if not step > 0.0:
-            return s
         mantissa, exponent = math.frexp(abs(reach[s]))
         exponent -= time + (mantissa == 0.5)
-        steps[s] = math.ldexp(step, time)
-        if step < math.ldexp(1.0, min(exponent, 1000)):
-            exponent = math.floor(math.log2(step))
+        longest = math.ldexp(1.0, min(exponent, 1000))
+        step = _step(table, products, own, group)
+        corner = step
+        if table.laws.operations.shape[0] > 0:
+            step, corner = _to_corner(table, space, products, own, group, step, longest)
+        if not corner > 0.0:
+            return s
+        steps[s] = math.ldexp(corner, time)
+        if corner < longest:
+            exponent = math.floor(math.log2(step)) if corner >= step else math.ceil(math.log2(corner))
         lengths[s] = math.ldexp(way, exponent + time)
         for k in range(order + 1):
             # The powers of what does not change are zero, whatever the length.

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from itertools import starmap
 
 from core.errors import InvalidParameter, Path
-from core.formulas import Node
+from core.formulas import Node, names_of
 from core.multibody.algebra.polynomials import ONE, Ball, Poly, constant, coordinate, is_zero
 from core.multibody.language.forces import AppliedForce, Damper, Field, Spring, Torque
 from core.multibody.language.motion_formulas import (
@@ -63,7 +63,7 @@ def add_law(
     """
     numbers = measures.numerals.let
     inputs = {one: _input(measures, one, own, path) for one in sorted(formula.names)}
-    used = {one: numbers[one] for one in _names(formula.root) if one in numbers}
+    used = {one: numbers[one] for one in names_of(formula.root) if one in numbers}
     rates = linear_in_rates(formula.root, inputs, used)
     for one, factor in (rates or {}).items():
         for key, slope in inputs[one].form.items():
@@ -74,10 +74,6 @@ def add_law(
     measures.table.laws.append(law)
     measures.conservative = False
     return len(measures.table.laws) - 1
-
-
-def _names(node: Node) -> set[str]:
-    return {node.text} if node.kind == "name" else set().union(*map(_names, node.inner))
 
 
 def _input(measures: Measures, name: str, own: Own, path: Path) -> Input:

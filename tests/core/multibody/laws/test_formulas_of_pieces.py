@@ -1,0 +1,177 @@
+"""Forces by formulas that change their piece, and speeds that pass through zero, against closed forms and mpmath."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from core.errors import AccuracyUnreachable, InvalidParameter
+from core.multibody.answer import SceneSolution
+from core.multibody.language.reading import scene_from
+from core.multibody.solve import solve_scene
+from core.multibody.trajectory.occurrences import ExtremesOf, When
+
+Exact = Callable[[mp.mpf], Sequence[mp.mpf]]
+
+
+def scene(force: Sequence[Any], gravity: Sequence[Any] = (0, 0), **body: Any) -> dict[str, Any]:
+    push = {"kind": "force", "name": "f", "place": "p", "force": list(force)}
+    bodies = {"p": {"mass": 1, "at": [0, 0]} | body}
+    return {"gravity": list(gravity), "bodies": bodies, "connections": [push]}
+
+
+def answer(
+    description: dict[str, Any], times: Sequence[float], outputs: Sequence[Any] = ("trajectory", "forces-in-time")
+) -> SceneSolution:
+    return solve_scene(scene_from(description), np.array(times), outputs)
+
+
+def compared(found: SceneSolution, column: str, exact: Exact) -> None:
+    assert found.trajectory is not None
+    own = found.trajectory.columns[column]
+    with mp.workdps(40):
+        wanted = np.array([[float(x) for x in exact(mp.mpf(t))] for t in found.trajectory.time.tolist()])
+    assert np.max(np.abs(own.values - wanted)) <= own.error + 2.0**-52 * np.max(np.abs(wanted))
+    assert own.error < 1e-11
+
+
+def ramp(t: mp.mpf) -> mp.mpf:
+    """Return the velocity under the force |t - 1|."""
+    return (1 - (1 - t) * abs(1 - t)) / 2
+
+
+def wave(t: mp.mpf) -> mp.mpf:
+    """Return the velocity under a force that is 1 and -1 by turns, for one second each."""
+    return abs(t - 2 * mp.floor(t / 2 + mp.mpf(1) / 2))
+
+
+@pytest.mark.parametrize(
+    ("formula", "rate"),
+    [
+        ("abs(t - 1)", ramp),
+        ("max(t - 1, 1 - t)", ramp),
+        ("min(t, 1)", lambda t: t**2 / 2 if t < 1 else t - mp.mpf(1) / 2),
+        ("if(t - 1, 2, 0)", lambda t: 2 * max(t - 1, 0)),
+        ("if(t - 1, 0, 1/(2 - t))", lambda t: mp.log(2 / (2 - min(t, 1)))),
+        ("sign(sin(pi*t))", wave),
+    ],
+)
+def test_a_force_of_time_in_pieces(formula: str, rate: Callable[[mp.mpf], mp.mpf]) -> None:
+    compared(answer(scene([formula, 0]), [0.0, 0.5, 0.999, 1.7, 3.2]), "p.velocity", lambda t: [rate(t), 0])
+
+
+def test_a_body_between_two_forces_that_are_constant() -> None:
+    """x'' = -sign(x): parabolas of which each takes 2 sqrt(2) s."""
+
+    def place(t: mp.mpf) -> mp.mpf:
+        half = mp.sqrt(8)
+        turns = mp.floor((t + mp.sqrt(2)) / half)
+        s = t - turns * half
+        return (-1) ** int(turns) * (1 - s**2 / 2)
+
+    compared(answer(scene(["-sign(x)", 0], at=[1, 0]), [0.0, 1.0, 2.0, 10.0]), "p.position", lambda t: [place(t), 0])
+
+
+def test_a_spring_by_a_square_has_its_largest_speed_in_the_middle() -> None:
+    """x'' = -|x| x from 1 at rest: v^2 = 2 (1 - |x|^3)/3, and a quarter of a period is an integral."""
+    outputs = ("trajectory", ExtremesOf("p.velocity.x"), When("p.position.x", 0))
+    found = answer(scene(["-abs(x)*x", 0], at=[1, 0]), [0.0, 4.0], outputs)
+    assert found.extremes is not None
+    assert found.occurrences is not None
+    assert found.extremes[0].least == pytest.approx(-np.sqrt(2 / 3), abs=1e-15)
+    with mp.workdps(30):
+        # By x = 1 - s^2 the integrand has no singularity.
+        quarter = mp.quad(lambda s: 2 * mp.sqrt(mp.mpf(3) / 2) / mp.sqrt(3 - 3 * s**2 + s**4), [0, 1])
+    assert found.occurrences[0].time == pytest.approx(float(quarter), rel=1e-14)
+
+
+def test_a_tilted_throw_with_quadratic_drag_comes_back() -> None:
+    """As upright, with u = g = 10: v = u tan(T - t) up to T = pi/4, and u tanh(T - t) from there."""
+
+    def rate(t: mp.mpf) -> mp.mpf:
+        return 10 * (mp.tan(mp.pi / 4 - t) if t < mp.pi / 4 else mp.tanh(mp.pi / 4 - t))
+
+    found = answer(scene(["-speed*vx/10", "-speed*vy/10"], [-6, -8], velocity=[6, 8]), [0.0, 0.3, 0.8, 2.0])
+    compared(found, "p.velocity", lambda t: [mp.mpf(6) / 10 * rate(t), mp.mpf(8) / 10 * rate(t)])
+
+
+def test_a_pendulum_swings_with_quadratic_drag() -> None:
+    """Between the turns E = cos(a) and w^2 are related by a linear equation: d(w^2)/da = -2 g sin(a) -+ 2 c w^2."""
+    rod = {"kind": "rod", "a": "p", "b": [0, 0]}
+    swing = scene(["-0.3*speed*vx", "-0.3*speed*vy"], [0, -10], at=[1, 0])
+    swing["connections"].append(rod)
+    outputs = ("trajectory", When("p.velocity.x", 0))
+    found = answer(swing, [0.0, 4.0], outputs)
+    assert found.occurrences is not None
+    c, g = mp.mpf("0.3"), mp.mpf(10)
+
+    def turn(a: mp.mpf) -> mp.mpf:
+        """Return the angle from below at which a swing turns that starts at rest at an angle on the other side."""
+
+        def square(b: mp.mpf) -> mp.mpf:
+            integral = mp.quad(lambda s: -2 * g * mp.sin(s) * mp.exp(2 * c * s), [-a, b])
+            return mp.exp(-2 * c * b) * integral
+
+        return mp.findroot(square, a * mp.mpf("0.7"))
+
+    with mp.workdps(25):
+        first = turn(mp.pi / 2)
+        second = turn(first)
+    turns = [one for one in found.occurrences if abs(one.time) > 0]
+    assert found.trajectory is not None
+    places = answer(swing, [turns[0].time], ("trajectory",)).trajectory
+    assert places is not None
+    # At a turn the velocity vanishes with its direction: x = sin(a) and y = -cos(a).
+    np.testing.assert_allclose(
+        places.columns["p.position"].values[0], [-float(mp.sin(first)), -float(mp.cos(first))], atol=1e-13
+    )
+    assert second < first
+
+
+def test_a_ball_bounces_upright_with_quadratic_drag() -> None:
+    """From the second touch on as by formulas: v0^2 falls to v0^2/(1 + c v0^2/g) on the way up and down."""
+    ball = scene(["-speed*vx/10", "-speed*vy/10"], [0, -10], at=[0, 2])
+    ball["connections"].append(
+        {"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, 0]}, "restitution": 0.5}
+    )
+    found = answer(ball, [0.0, 1.4])
+    with mp.workdps(30):
+        # With u = g = 10: a fall from h takes acosh(exp(h/10)), and hits at 10 sqrt(1 - exp(-h/5)).
+        first, speed = mp.acosh(mp.exp(mp.mpf(2) / 10)), 10 * mp.sqrt(1 - mp.exp(-mp.mpf(2) / 5))
+        up = mp.atan(speed / 20)
+        height = -10 * mp.log(mp.cos(up))
+        second = first + up + mp.acosh(mp.exp(height / 10))
+    times = [event.time for event in found.events]
+    np.testing.assert_allclose(times, [float(first), float(second)], rtol=1e-14)
+
+
+def test_a_one_sided_spring_beside_a_wall() -> None:
+    """A body meets a spring that only pushes, comes back as fast, and bounces off a wall at half the speed."""
+    description = scene(["max(0, 50*(1 - x))", 0], at=[2, 0], velocity=[-1, 0])
+    wall = {"kind": "contact", "name": "wall", "place": "p", "on": {"at": [5, 0], "slope": "pi/2"}, "restitution": 0.5}
+    description["connections"].append(wall)
+    found = answer(description, [0.0, 1.5, 6.0])
+    back = 1 + np.pi / np.sqrt(50)
+    assert [event.time for event in found.events] == pytest.approx([back + 4], rel=1e-14)
+    assert found.trajectory is not None
+    assert found.trajectory.columns["p.position"].values[2, 0] == pytest.approx(5 - (6 - back - 4) / 2, rel=1e-14)
+
+
+def test_a_force_against_the_slip_stops_a_body_and_says_no_more() -> None:
+    compared(answer(scene(["-sign(vx)", 0], velocity=[1, 0]), [0.0, 0.9]), "p.velocity", lambda t: [1 - t, 0])
+    with pytest.raises(AccuracyUnreachable, match="does not say how the motion goes on from 1 s"):
+        answer(scene(["-sign(vx)", 0], velocity=[1, 0]), [0.0, 2.0])
+    with pytest.raises(InvalidParameter, match="lead away from the zero"):
+        answer(scene(["0.5 - sign(vx)", 0]), [0.0, 2.0])
+
+
+def test_a_force_that_overcomes_a_sign_starts_a_body() -> None:
+    compared(answer(scene(["3 - sign(vx)", 0]), [0.0, 1.0, 2.0]), "p.velocity", lambda t: [2 * t, 0])
+
+
+def test_a_sign_of_what_stays_zero_is_zero() -> None:
+    compared(answer(scene(["1 + sign(y)", 0]), [0.0, 1.0]), "p.velocity", lambda t: [t, 0])
