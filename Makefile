@@ -149,6 +149,9 @@ vendor:
 	cp build/vendor/node_modules/uplot/LICENSE $(VENDOR)/uplot.LICENSE.txt
 	cat build/vendor/node_modules/swagger-ui-dist/NOTICE build/vendor/node_modules/swagger-ui-dist/LICENSE > $(VENDOR)/swagger-ui.LICENSE.txt
 	cp build/vendor/node_modules/swagger-ui-dist/swagger-ui-bundle.js.LICENSE.txt $(VENDOR)/swagger-ui-bundle.LICENSE.txt
+	cp build/vendor/node_modules/katex/dist/katex.min.js build/vendor/node_modules/katex/dist/katex.min.css docs/site/katex
+	cp build/vendor/node_modules/katex/LICENSE docs/site/katex/LICENSE.txt
+	for font in docs/site/katex/fonts/*; do cp build/vendor/node_modules/katex/dist/fonts/$$(basename $$font) $$font; done
 
 clean:
 	rm -rf $(ENV) $(PEERS) $(NEWEST) $(BROWSER) $(SITE) build .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -30,6 +30,8 @@ def write(folder: Path) -> None:
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, copy)
     shutil.copyfile(DOCS / "site/wide.css", target / "wide.css")
+    # KaTeX typesets the formulas; the site loads nothing from elsewhere.
+    shutil.copytree(DOCS / "site/katex", target / "katex")
     configuration = (DOCS / "site/mkdocs.yml").read_text(encoding="utf-8")
     # JSON is YAML, too.
     _put(folder / "mkdocs.yml", f"{configuration}nav: {json.dumps(navigation())}\n")

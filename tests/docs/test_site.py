@@ -68,7 +68,10 @@ def test_what_is_written_is_what_mkdocs_reads(tmp_path: Path) -> None:
         assert text.startswith("# "), place
         for image in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text):
             assert ((tmp_path / "pages" / place).parent / image).exists()
-    assert "nav: [" in (tmp_path / "mkdocs.yml").read_text()
+    configuration = (tmp_path / "mkdocs.yml").read_text()
+    assert "nav: [" in configuration
+    for line in re.findall(r"^extra_(?:css|javascript): \[(.*)\]$", configuration, re.MULTILINE):
+        assert [name for name in line.split(", ") if not (tmp_path / "pages" / name).exists()] == []
 
 
 @pytest.mark.parametrize("name", FIGURES)

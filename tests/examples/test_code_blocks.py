@@ -26,7 +26,7 @@ from docs.site.navigation import pages
 
 ROOT = Path(__file__).parents[2]
 RUN = ("sh", "python", "json")
-SHOWN = ("text", "html", "ts", "yaml")
+SHOWN = ("text", "html", "math", "ts", "yaml")
 """Languages of blocks that are only read."""
 
 REASONS = ("installs packages", "needs Docker", "needs a cluster", "runs for minutes")
