@@ -245,14 +245,10 @@ def keplerian(table: Table) -> Kepler | None:
     (length,) = others
     form = measures[0] if measures[1] is product[0] else measures[1]
     around = _around(form, places, length)
-    pairs = {(min(length, w), max(length, w)), ()}
-    if around is None or set(product[0]) != pairs or not _unit_product(product[0], (min(length, w), max(length, w))):
+    pair = min(length, w), max(length, w)
+    if around is None or set(product[0]) != {pair, ()} or not is_zero(product[0][pair] + product[0][()]):
         return None
     return Kepler(table, places, (length, w), around, mu)
-
-
-def _unit_product(measure: Poly, key: tuple[int, ...]) -> bool:
-    return bool(is_zero(measure[key] + measure[()]))
 
 
 def _along_a_line(measure: Poly, x: int, w: int) -> Ball | None:
