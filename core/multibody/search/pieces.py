@@ -13,7 +13,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Integers
+from core.compiled import kernel
+from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly
 from core.multibody.equations.packed import Packed, Units, two_to
@@ -219,18 +221,8 @@ class ExpandedPlaces:
         states = self.whole.reduced_in_doubles if self.coarse else self.whole.reduced_in_pairs
         z, w = states(times, self.kind)
         lengths, own, own_sizes = _expanded(arrays, units, (z[:, where], w[:, where]), reach)
-        series, sizes = np.zeros((*z.shape[:2], ORDER + 1, 2)), np.zeros((*z.shape[:2], ORDER + 1))
-        series[:, where], sizes[:, where] = own[:, : len(where)], own_sizes[:, : len(where)]
         slopes, offsets = self.whole.affine
-        n = z.shape[1]
-        # Coefficients of one power after another, of which the first alone has offsets.
-        powers = np.moveaxis(series, 2, 0)
-        count = len(times)
-        mapped = spread(slopes, np.zeros_like(offsets), np.ascontiguousarray(powers).reshape((ORDER + 1) * count, n, 2))
-        mapped[:count] = spread(slopes, offsets, np.ascontiguousarray(powers[0]))
-        places = np.moveaxis(mapped.reshape(ORDER + 1, count, len(offsets), 2), 0, 2)
-        place_sizes = np.einsum("ij,pjk->pik", np.abs(slopes[..., 0]), sizes)
-        place_sizes[..., 0] += np.abs(offsets[:, 0])
+        places, place_sizes = _spread_series(slopes, offsets, own, own_sizes, np.array(where, dtype=np.int64))
         nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
         return Pieces(*lengths, places, place_sizes, nothing, nothing[..., 0])
 
@@ -251,6 +243,39 @@ def _expanded(
     if done < count:
         raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
     return (lengths, steps), series, sizes
+
+
+@kernel()
+def _spread_series(
+    slopes: Floats, offsets: Floats, series: Floats, sizes: Floats, where: Integers
+) -> tuple[Floats, Floats]:
+    """Return the series of all coordinates and the sizes of their terms, from those of some of the reduced table.
+
+    Parameters
+    ----------
+    series, sizes : (p, m, order + 1, 2) and (p, m, order + 1)
+        The first of m are those of the coordinates `where` of the reduced table; the others are taken to be at zero.
+    """
+    pieces, count, powers = series.shape[0], slopes.shape[0], series.shape[2]
+    found, of_terms = np.empty((pieces, count, powers, 2)), np.empty((pieces, count, powers))
+    for s in range(pieces):
+        for i in range(count):
+            for k in range(powers):
+                sh, sl = (offsets[i, 0], offsets[i, 1]) if k == 0 else (0.0, 0.0)
+                size = abs(sh)
+                total = size
+                for m in range(len(where)):
+                    slope, tail = slopes[i, where[m], 0], slopes[i, where[m], 1]
+                    if slope != 0.0:
+                        ph, pl = dd_mul(slope, tail, series[s, m, k, 0], series[s, m, k, 1])
+                        sh, sl = dd_add(sh, sl, ph, pl)
+                        size += abs(ph)
+                        total += abs(slope) * sizes[s, m, k]
+                if abs(sh) <= 2.0**-104 * size:
+                    sh, sl = 0.0, 0.0
+                found[s, i, k, 0], found[s, i, k, 1] = sh, sl
+                of_terms[s, i, k] = total
+    return found, of_terms
 
 
 def repeats_after(whole: Whole, coordinates: Sequence[int] | None = None) -> float | None:
