@@ -32,7 +32,7 @@ from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
 from core.multibody.audit.searches import SearchedQuantities
 from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of, unsure_of
-from core.multibody.audit.totals import check_totals, with_totals
+from core.multibody.audit.totals import check_paths, check_totals, check_works, with_totals
 from core.multibody.audit.windows import NODES, check_windows, nodes
 from core.multibody.language.scene import Scene
 
@@ -110,6 +110,8 @@ class _Audit:
         check_samples(ledger, measures, samples, states, sizes)
         if self.own_rows is not None:
             check_totals(ledger, description, samples, self.own_rows)
+            check_works(ledger, description, samples, self.own_rows, phased=bool(answer.phases))
+            check_paths(ledger, description, self.own_rows)
         check_equilibria(ledger, description, answer, self.random)
         if asked is not None:
             self._check_motion(ledger, samples, start, ahead, after, measures, asked, sizes)

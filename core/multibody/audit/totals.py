@@ -1,4 +1,4 @@
-"""Energies and momenta in time: those of the places and rates that are answered beside them."""
+"""Energies, momenta and works in time: those of the places and rates that are answered beside them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from core.multibody.audit.bodies import RigidBody
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.energy import kinetic, potential, size_of
 from core.multibody.audit.failure import Ledger, propagated
+from core.multibody.audit.laws import SpinningFrameDefinition
 from core.multibody.audit.placement import Numbers, cross
 from core.multibody.audit.samples import Columns, Part, Samples, samples_of
 from core.systems.trajectory import Column
@@ -19,6 +20,7 @@ Total = Callable[[Samples], Numbers]
 """From samples to a number of each, or a vector."""
 
 KINETIC, POTENTIAL = "energy.kinetic", "energy.potential"
+WORK, PATH = ".work", ".path"
 MOMENTUM, ANGULAR = "momentum", "angular_momentum"
 
 
@@ -39,6 +41,67 @@ def check_totals(ledger: Ledger, description: Description, samples: Samples, own
         if np.any(off > allowed):
             allowed = allowed + _largest(propagated(samples, tuple(description.bodies), (), total))
         ledger.compare("total of places and rates", name, samples.times, off, allowed)
+
+
+def check_works(ledger: Ledger, description: Description, samples: Samples, own: Part, *, phased: bool) -> None:
+    """Require that all works together are the change of the kinetic energy, from the first row behind the start on.
+
+    Parameters
+    ----------
+    samples : Samples
+        Of which the last are those of the rows `own` of the columns of the answer.
+    phased : bool
+        Whether impacts may take something.
+    """
+    names = [name for name in own.columns if name.endswith(WORK)]
+    if not names or not _works_are_all(description, set(names), phased=phased):
+        return
+    spun = all(samples.spun(name) for name, body in description.bodies.items() if body.inertia is not None)
+    rows = np.argsort(own.times, kind="stable")
+    rows = rows[own.times[rows] >= 0.0]
+    if len(rows) < 2 or not spun:
+        return
+    some, total = samples.at(len(samples.times) - len(own.times) + rows), partial(kinetic, description)
+    moving, done = total(some), np.array([own.values(name)[rows] for name in names])
+    rest = done.sum(axis=0) - moving
+    size = np.abs(done).sum(axis=0).max() + 4.0 * moving.max()
+    allowed = 2.0 * sum(own.columns[name].error for name in names) + 4.0 * ledger.rounding * size
+    off = np.abs(rest - rest[0])
+    if (off > allowed).any():
+        allowed = allowed + 2.0 * float(propagated(some, tuple(description.bodies), (), total).max())
+    ledger.compare("works are the change of the kinetic energy", "", some.times, off, allowed)
+
+
+def check_paths(ledger: Ledger, description: Description, own: Part) -> None:
+    """Require that no path is shorter between two rows of an answer than the way between its places."""
+    order = np.argsort(own.times, kind="stable")
+    for name in description.bodies:
+        if f"{name}{PATH}" not in own.columns or len(order) < 2:
+            continue
+        path, place = own.columns[f"{name}{PATH}"], own.columns[f"{name}.position"]
+        gone, places = np.diff(own.values(f"{name}{PATH}")[order]), own.values(f"{name}.position")[order]
+        way = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        allowed = 2.0 * (path.error + place.error) + ledger.rounding * float(np.abs(places).max())
+        ledger.compare("path as long as its way", name, own.times[order][1:], np.minimum(gone - way, 0.0), allowed)
+
+
+def _works_are_all(description: Description, names: set[str], *, phased: bool) -> bool:
+    """Return whether the works of an answer are all that change the kinetic energy.
+
+    Works that rigid bodies do not determine are left out of an answer; those of spinning frames are not among them.
+    """
+    needed = {f"gravity{WORK}"} if any(description.gravity) else set()
+    for connection in description.connections:
+        gaps = connection.gaps(description.start)
+        if connection.kind == SpinningFrameDefinition.kind:
+            return False
+        if not gaps and (connection.lawful or connection.loads or connection.works()):
+            needed.add(f"{connection.name}{WORK}")
+        for force in gaps if phased else ():
+            name, touch = force.rsplit(".", 1)[0], connection.coefficients
+            needed |= {f"{name}.impacts{WORK}"}
+            needed |= {f"{name}.friction{WORK}"} if touch is not None and touch.friction else set()
+    return needed <= names and not description.undefined
 
 
 def with_totals(description: Description, part: Part, names: Iterable[str], rounding: float) -> Columns:

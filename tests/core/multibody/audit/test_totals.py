@@ -1,4 +1,4 @@
-"""Wrong energies and momenta in time are refused, and wrong searches for them."""
+"""Wrong energies, momenta, works and paths in time are refused, and wrong searches for energies and momenta."""
 
 from __future__ import annotations
 
@@ -61,3 +61,43 @@ def test_a_wrong_extreme_of_a_total_is_refused(quantity: str) -> None:
         for field in ("least", "largest"):
             extremes = tuple(replace(x, **{field: getattr(x, field) + 1e-5}) for x in one.answer.extremes or ())
             assert replace(one, answer=replace(one.answer, extremes=extremes)).failure() is not None, scene
+
+
+WORKING = (
+    "damped-oscillator",
+    "block-on-spring-with-friction",
+    "ball-bounces-with-spin",
+    "kepler-ellipse",
+    "spherical-pendulum",
+)
+
+
+@pytest.mark.parametrize("change", [lambda x: x * (1.0 + 1e-5), lambda x: -x, lambda x: 0.0 * x])
+def test_works_that_are_not_the_change_of_the_kinetic_energy_are_refused(change: Callable[[Any], Any]) -> None:
+    count = 0
+    for scene in WORKING:
+        one = answered(description_of(scene), TIMES, ("trajectory", "work-in-time"))
+        motion = one.answer.trajectory
+        assert motion is not None
+        assert one.failure() is None, scene
+        for name, column in motion.columns.items():
+            if name.endswith(".work") and np.ptp(column.values) > 1e-3:
+                columns = {**motion.columns, name: replace(column, values=change(column.values))}
+                wrong = replace(one, answer=replace(one.answer, trajectory=replace(motion, columns=columns)))
+                assert wrong.failure() is not None, (scene, name)
+                count += 1
+    assert count >= 6
+
+
+def test_a_path_that_is_shorter_than_its_way_is_refused() -> None:
+    for scene in ("damped-oscillator", "ball-bounces-with-spin", "kepler-ellipse"):
+        one = answered(description_of(scene), TIMES, ("trajectory", "paths-in-time"))
+        motion = one.answer.trajectory
+        assert motion is not None
+        assert one.failure() is None, scene
+        name = next(name for name in motion.columns if name.endswith(".path"))
+        column = motion.columns[name]
+        for values in (0.0 * column.values, 0.5 * column.values, -column.values):
+            columns = {**motion.columns, name: replace(column, values=values)}
+            wrong = replace(one, answer=replace(one.answer, trajectory=replace(motion, columns=columns)))
+            assert wrong.failure() is not None, scene
