@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.errors import AccuracyUnreachable, NotApplicable
+from core.errors import AccuracyUnreachable, BudgetExceeded, NotApplicable
 from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
+from core.multibody.trajectory.scene_request import MOST_NUMBERS, require_affordable
 from core.systems.methods import RungeKutta4
 from core.systems.trajectory import Trajectory
 from tests.core.multibody.worked_examples import TWO_RODS, points, read
@@ -99,3 +100,12 @@ def test_a_phase_shorter_than_the_least_double_is_no_failure() -> None:
     assert [(event.kind, event.time) for event in answer.events] == [("stick", 0.0)]
     assert answer.trajectory is not None
     assert answer.trajectory.columns["b.position"].values.tolist() == [[0.0, 0.0], [0.0, 0.0]]
+
+
+def test_a_trajectory_has_no_more_numbers_than_one_may_have() -> None:
+    """A coordinate and its rate are two doubles each, a value and its tail."""
+    most = MOST_NUMBERS // (4 * 100)
+    require_affordable(most, 100)
+    with pytest.raises(BudgetExceeded):
+        require_affordable(most + 1, 100)
+    require_affordable(most, 0)
