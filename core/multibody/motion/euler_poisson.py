@@ -14,17 +14,10 @@ import numpy as np
 from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_add_d, dd_div_d, dd_mul_d
-from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import packed, pair, units_of
-from core.multibody.motion.numerical import (
-    CHECK_TOLERANCE,
-    FINE_TOLERANCE,
-    MOST_STEPS,
-    Numerical,
-    Run,
-)
+from core.multibody.motion.numerical import CHECK_TOLERANCE, FINE_TOLERANCE, Numerical, Run, run_by
 from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, step_size
 from core.multibody.motion.series_pairs import moved_pairs
 from core.multibody.motion.turning_body import TurningBody, cross_matrix, inverse_of, product_of
@@ -106,28 +99,12 @@ class EulerPoisson(Numerical):
             Where the motion leaves the range of doubles.
         """
         order, tolerance = _ORDERS[kind]
-        y, clock = self.start.copy(), np.zeros(2)
-        starts, series = [], []
-        steps = 0
-        while True:
-            chunk_starts, chunk = np.empty((_CHUNK + 1, 2)), np.empty((_CHUNK, 9, order + 1, 2))
-            ended, count = _advance(self.squares, self.torque, self.pull, y, clock, end, tolerance, chunk_starts, chunk)
-            starts.append(chunk_starts[:count])
-            series.append(chunk[:count])
-            steps += count
-            if ended != FULL:
-                break
-            if steps > MOST_STEPS:
-                raise BudgetExceeded("steps", steps, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
-        if ended == LOST:
-            raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
-        starts.append(clock[None, :].copy())
-        if not steps:
-            single = np.zeros((1, 9, order + 1, 2))
-            single[0, :, 0] = self.start[3:]
-            single[0, :, 1] = _rates(self.start)
-            return Run(np.zeros((2, 2)), single)
-        return Run(np.concatenate(starts), np.concatenate(series))
+        y = self.start.copy()
+
+        def steps(clock: Floats, starts: Floats, series: Floats) -> tuple[int, int]:
+            return _advance(self.squares, self.torque, self.pull, y, clock, end, tolerance, starts, series)
+
+        return run_by(steps, (self.start[3:], _rates(self.start)), (9, order + 1, 2), _CHUNK)
 
 
 _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))

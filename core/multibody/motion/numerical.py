@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
 from core.multibody.motion.motion import Motion, States
-from core.multibody.motion.series import DONE, FULL, LOST, STUCK, advance, placed, sampled
+from core.multibody.motion.series import DONE, FULL, LOST, advance, placed, sampled
 from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
 from core.multibody.table.table import Table
 
@@ -251,39 +251,58 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
         "check": (CHECK_ORDER, CHECK_TOLERANCE),
     }[kind]
     q, v = state(table, units)
+    shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
+    start = (q[:, 0], v[:, 0]) if kind == "doubles" else (q, v)
+    take = advance if kind == "doubles" else advance_pairs
+
+    def steps(clock: Floats, starts: Floats, series: Floats) -> tuple[int, int]:
+        return take(arrays, q, v, clock, end, tolerance, starts, series)
+
+    return run_by(steps, start, shape, max(16, _CHUNK // (16 * len(q) * (order + 1))))
+
+
+def run_by(
+    steps: Callable[[Floats, Floats, Floats], tuple[int, int]],
+    start: tuple[Floats, Floats],
+    shape: tuple[int, ...],
+    many: int,
+) -> Run:
+    """Return a run by a function that takes steps until its arrays are full.
+
+    Parameters
+    ----------
+    steps : callable
+        Moves a clock, fills in where steps start and their series; it returns how it ended, and the number of steps.
+    start : tuple of two ndarrays
+        Places and rates at the start.
+    shape : tuple of int
+        Of the series of one step.
+    many : int
+        Steps for which there is room at once.
+
+    Raises
+    ------
+    BudgetExceeded, AccuracyUnreachable
+        As `integrate`.
+    """
     clock = np.zeros(2)
     starts, series = [], []
-    steps = 0
-    shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
-    many = max(16, _CHUNK // (16 * len(q) * (order + 1)))
-    while True:
+    taken, ended = 0, FULL
+    while ended == FULL:
+        if taken > MOST_STEPS:
+            raise BudgetExceeded("steps", taken, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
         chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
-        take = advance if kind == "doubles" else advance_pairs
-        ended, count = take(arrays, q, v, clock, end, tolerance, chunk_starts, chunk)
+        ended, count = steps(clock, chunk_starts, chunk)
         starts.append(chunk_starts[:count])
         series.append(chunk[:count])
-        steps += count
-        if ended != FULL:
-            break
-        if steps > MOST_STEPS:
-            raise BudgetExceeded("steps", steps, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
+        taken += count
     if ended == LOST:
         raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
-    if ended == STUCK:
-        time = clock[0] * two_to(units.time)
-        raise AccuracyUnreachable(
-            None,
-            np.inf,
-            f"a formula does not say how the motion goes on from {time:.10g} s: either side of the zero on which it "
-            "depends leads back to it, or it begins with a power of time beyond those of the series",
-            path=("times",),
-            remedy="ask for earlier times, or describe friction that holds what is at rest by a contact",
-        )
     starts.append(clock[None, :].copy())
-    if not steps:
+    if not taken:
         # A run of no duration has one step, so that the start can be evaluated.
         single = np.zeros((1, *shape))
-        single[0, :, 0], single[0, :, 1] = (q[:, 0], v[:, 0]) if kind == "doubles" else (q, v)
+        single[0, :, 0], single[0, :, 1] = start
         return Run(np.zeros((2, 2)), single, ended != DONE)
     return Run(np.concatenate(starts), series[0] if len(series) == 1 else np.concatenate(series), ended != DONE)
 

@@ -17,7 +17,7 @@ from core.multibody.equations.expansion import Expansion
 from core.multibody.motion.modelling import Modelled, models_of
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.tracks import Track, Tracks
-from core.multibody.phases.turning_slip import ENDED, TurningSlip, turning_model
+from core.multibody.phases.turning_slip import ENDED, turning_model
 from core.multibody.phases.uniform_pieces import keeps_its_forces, uniform_motion
 from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Force, Unilateral
@@ -129,7 +129,7 @@ class Phase:
     @property
     def turning(self) -> bool:
         """Whether friction turns with the slip."""
-        return any(isinstance(motion, TurningSlip) for _, motion in self.models[0].whole.parts)
+        return any(row.slide is not None for row in self.tables[0].table.rows)
 
     @property
     def share(self) -> float:

@@ -238,7 +238,8 @@ def expansions_of(phase: Phase, coordinates: Sequence[int] | None = None, *, fin
 
 def _first_reach(phase: Phase) -> float:
     """Return how far a search goes at first: series that are followed beyond an event are in vain."""
-    scales = [motion.units.time for _, motion in phase.models[0].whole.parts if isinstance(motion, Numerical)]
+    known = [motion.in_arrays for _, motion in phase.models[0].whole.parts]
+    scales = [one[1].time for one in known if one is not None]
     return 2.0 * two_to(max(scales)) if scales else math.inf
 
 
