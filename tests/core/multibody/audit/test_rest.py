@@ -57,7 +57,6 @@ STRING: dict[str, Any] = {
 ASKED = {
     "force": (BLOCK, "/connections/1/force/0", [-30, 30]),
     "friction": (BLOCK, "/connections/0/friction", [0.1, 1]),
-    "mass": (BLOCK, "/bodies/block/mass", [0.1, 3]),
     "friction of a ladder": (LADDER, "/connections/0/friction", [0.01, 1]),
     "height of a ladder": (LADDER, "/let/h", [1, 6]),
     "force in space": (TABLE, "/connections/1/force/0", [-30, 30]),
