@@ -296,6 +296,7 @@ TESTED_IN |= {
             "audit/formula_definitions audit/formula_forces audit/formulas language/motion_formulas laws/kernel "
             "laws/law laws/linear laws/samples laws/series laws/tape table/formula_laws"
         ),
+        "table/test_formulas_of_time": "audit/driven table/moving_places",
         "laws/test_formulas_of_pieces": ("equations/starting_signs laws/corners laws/switches"),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "

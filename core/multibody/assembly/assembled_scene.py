@@ -132,7 +132,7 @@ def _places(scene: Scene, found: Described, bodies: Sequence[str]) -> _Places:
     owned = {name: {i for (i, _) in metric_of(table, [frame], arb(extent))} for name, frame in frames.items()}
     fixed = set().union(*(owned[name] for name in frames if name not in bodies))
     clocks = {i for i, unit in enumerate(table.units) if unit == "s"}
-    free = [i for i in range(len(given)) if i not in fixed and i not in clocks]
+    free = [i for i in range(len(given)) if i not in fixed and i not in clocks and i not in table.timed]
     rows = [(row.name, row.measure) for row in table.rows if row.measure is not None]
     spend(_UNITS_OF_A_SKETCH * len(given) ** 3)
     kept: dict[str, Poly] = {}

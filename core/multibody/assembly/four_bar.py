@@ -108,7 +108,7 @@ def four_bar_of(scene: Scene, measures: Measures) -> FourBar | None:
 
     Links are the bodies, the rods and the ground; joints are pins, and the ends of rods.
     """
-    if measures.dimension != 2:
+    if measures.dimension != 2 or measures.table.timed:
         return None
     same: dict[Joint, Joint] = {}
     joints: dict[str, list[Joint]] = {}

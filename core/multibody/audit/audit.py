@@ -103,7 +103,7 @@ class _Audit:
         start = samples.at(slice(0, 1))
         after = None if gains is None else AfterStart(description, gains, start)
         own = (samples.placement, samples.motion)
-        ahead = moved(*(own if after is None else joined([own, after.samples()])))
+        ahead = moved(*(own if after is None else joined([own, after.samples()])), in_time=True)
         measures = measured(description, ahead)
         states = states_of(description, answer, samples.times)
         sizes = Sizes(description, samples)

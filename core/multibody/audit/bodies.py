@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from core.multibody.audit.formulas import FormulaValue, MovingPlace, by_time
 from core.multibody.audit.placement import Numbers, Place, Placement, Pose, turned
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
@@ -103,13 +104,25 @@ class Reader:
     def place(self, value: object, path: Path) -> Place:
         """Return a place: of a body, by name, or of the ground."""
         if not isinstance(value, str):
-            return Place(None, self.vector(value, path))
+            return self._point(value, path)
         if value == GROUND:
             return Place(None, (0.0,) * self.dimension)
         body, _, spot = value.partition(".")
         if spot in ("", "centre"):
             return Place(body, (0.0,) * self.dimension)
         return Place(body, self.bodies[body].places[spot])
+
+    def _point(self, value: object, path: Path) -> Place:
+        """Return a point of the ground, which may move by formulas of time."""
+        if isinstance(value, (list, tuple)):
+            found = [by_time(x, self.numerals, self.start, (*path, i)) for i, x in enumerate(value)]
+            if any(found):
+                every = tuple(
+                    FormulaValue.constant(self.number(x, (*path, i)), self.start) if own is None else own
+                    for i, (x, own) in enumerate(zip(value, found, strict=True))
+                )
+                return MovingPlace(None, tuple(float(one.value(self.start, {})) for one in every), every)
+        return Place(None, self.vector(value, path))
 
     def rim(self, value: object) -> float:
         """Return the radius of a body that is named as a whole; 0 of any other place."""

@@ -140,11 +140,11 @@ class Definition:
     @property
     def driven(self) -> float:
         """Speed or rate that it prescribes (m/s, rad/s)."""
-        return 0.0
+        return max((place.quickness or 0.0 for place in self.places()), default=0.0)
 
     def works(self) -> bool:
-        """Return whether it takes or brings energy beside its potential."""
-        return False
+        """Return whether it takes or brings energy beside its potential: it does where a place is moved."""
+        return any(place.quickness is not None for place in self.places())
 
     def places(self) -> Iterator[Place]:
         """Yield the places that it names."""

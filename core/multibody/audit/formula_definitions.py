@@ -36,7 +36,7 @@ def value_or_formula(reader: Reader, value: object, own: Mapping[str, Read], pat
     found = formula_of(reader, value, own, path)
     if found is not None:
         return found
-    return FormulaValue(Node("number", repr(reader.number(value, path))), {}, {}, frozenset(), reader.start)
+    return FormulaValue.constant(reader.number(value, path), reader.start)
 
 
 def _read(reader: Reader, name: str, own: Mapping[str, Read]) -> Read:

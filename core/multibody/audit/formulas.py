@@ -9,7 +9,8 @@ import numpy as np
 
 from core.formulas import Arithmetic, Node, value_of
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, spin_of
-from core.multibody.language.motion_formulas import LENGTH, TURNS
+from core.multibody.language.motion_formulas import LENGTH, TIME, TURNS, motion_formula
+from core.multibody.language.numerals import Numerals
 
 Read = Callable[[Placement, Motion], Numbers]
 """From a placement and its motion to what a name stands for, shape ()."""
@@ -56,6 +57,36 @@ _BOUNDED = ("sin", "cos", "exp", "sinh", "cosh", "tanh", "tan", "atan")
 """Functions by whose arguments a formula may swing or grow."""
 
 
+def by_time(value: object, numerals: Numerals, start: Placement, path: tuple[str | int, ...]) -> FormulaValue | None:
+    """Return a formula of time alone; None for a number."""
+    found = motion_formula(value, numerals, (), (), path)
+    if found is None:
+        return None
+    numbers = {name: float(number) for name, number in numerals.let.items()}
+    return FormulaValue(found.root, numbers, {TIME: time_of}, frozenset(), start)
+
+
+@dataclass(frozen=True)
+class MovingPlace(Place):
+    """A point of the ground that moves as formulas of time say; its offset is its place at the start.
+
+    Attributes
+    ----------
+    components : tuple of FormulaValue
+    """
+
+    components: tuple[FormulaValue, ...]
+
+    @property
+    def quickness(self) -> float | None:
+        """See `Place.quickness`."""
+        return max(one.quickness(0.0) for one in self.components)
+
+    def at(self, placement: Placement) -> Numbers:
+        """See `Place.at`."""
+        return np.stack(np.broadcast_arrays(*(one.value(placement, {}) for one in self.components)), axis=-1)
+
+
 @dataclass(frozen=True)
 class FormulaValue:
     """A formula, and what its names stand for.
@@ -76,6 +107,11 @@ class FormulaValue:
     inputs: Mapping[str, Read]
     rates: frozenset[str]
     start: Placement
+
+    @classmethod
+    def constant(cls, number: float, start: Placement) -> FormulaValue:
+        """Return a number."""
+        return cls(Node("number", repr(number)), {}, {}, frozenset(), start)
 
     def value(self, placement: Placement, motion: Motion) -> Numbers:
         """Return the value, shape ()."""

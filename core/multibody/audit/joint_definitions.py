@@ -7,6 +7,8 @@ import numpy as np
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
+from core.multibody.audit.driven import DrivenRod
+from core.multibody.audit.formula_definitions import value_or_formula
 from core.multibody.audit.joints import (
     Coincidence,
     OnCircle,
@@ -67,6 +69,9 @@ def slider(connection: Slider, reader: Reader, name: str, path: Path) -> Definit
 def rod(connection: Rod, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a rod."""
     a, b = ends_of(connection, reader, path)
+    if connection.drive is not None:
+        drive = value_or_formula(reader, connection.drive, {}, (*path, "drive"))
+        return DrivenRod(name, (*a.bodies, *b.bodies), a, b, distance_at_start(reader, a, b), drive)
     given = connection.length
     size = distance_at_start(reader, a, b) if given is None else reader.number(given, (*path, "length"))
     return RodDefinition(name, (*a.bodies, *b.bodies), a, b, size)

@@ -7,11 +7,14 @@ from math import hypot
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
+from core.multibody.audit.driven import DrivenRate, DrivenTurn
 from core.multibody.audit.formula_definitions import (
     damper_by_law,
     force_by_formulas,
+    formula_of,
     spring_by_law,
     torque_by_formula,
+    value_or_formula,
 )
 from core.multibody.audit.joint_definitions import distance_at_start, ends_of
 from core.multibody.audit.laws import (
@@ -86,6 +89,12 @@ def damper(connection: Damper, reader: Reader, name: str, path: Path) -> Definit
 @definition_of.register
 def motor(connection: Motor, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a motor."""
+    if connection.drive is not None:
+        drive = value_or_formula(reader, connection.drive, {}, (*path, "drive"))
+        return DrivenTurn(name, *_turning(connection), drive)
+    formula = formula_of(reader, connection.rate, {}, (*path, "rate"))
+    if formula is not None:
+        return DrivenRate(name, *_turning(connection), formula)
     return MotorDefinition(name, *_turning(connection), reader.number(connection.rate, (*path, "rate")))
 
 

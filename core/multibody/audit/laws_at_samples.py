@@ -162,7 +162,7 @@ class _Connection:
             if self.known:
 
                 def change(at: Samples, key: str = key) -> Numbers:
-                    return connection.held(moved(at.placement, at.of(connection.bodies)))[key].imag / STEP
+                    return connection.held(moved(at.placement, at.of(connection.bodies), in_time=True))[key].imag / STEP
 
                 self._hold(f"rate of {key} held", change, self.speed, value.imag / STEP)
         if not connection.rolls or not self.known:
@@ -191,7 +191,7 @@ class _Connection:
                 return wound(connection.gaps(at.placement)[force])
 
             def change(at: Samples, force: str = force) -> Numbers:
-                return connection.gaps(moved(at.placement, at.of(connection.bodies)))[force].imag / STEP
+                return connection.gaps(moved(at.placement, at.of(connection.bodies), in_time=True))[force].imag / STEP
 
             state, value = self.states.get(force), found[: len(self.samples.times)]
             gap = wound(value.real)

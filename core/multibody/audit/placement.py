@@ -106,6 +106,11 @@ class Place:
     body: str | None
     offset: tuple[float, ...]
 
+    @property
+    def quickness(self) -> float | None:
+        """Largest rate of the formulas of time by which it moves (rad/s); None of a place that is fixed."""
+        return None
+
     def at(self, placement: Placement) -> Numbers:
         """Return its coordinates in space (m), shape (d,).
 
@@ -203,9 +208,14 @@ def angle(x: Numbers, y: Numbers) -> Numbers:
     return found
 
 
-def moved(placement: Placement, motion: Motion) -> Placement:
-    """Return a placement moved by an imaginary step along a motion."""
-    return {**placement, **{name: _moved(placement[name], twist) for name, twist in motion.items()}}
+def moved(placement: Placement, motion: Motion, *, in_time: bool = False) -> Placement:
+    """Return a placement moved by an imaginary step along a motion; in time, too, unless the motion is virtual."""
+    found = {**placement, **{name: _moved(placement[name], twist) for name, twist in motion.items()}}
+    if not in_time:
+        return found
+    return {
+        name: pose._replace(time=None if pose.time is None else pose.time + 1j * STEP) for name, pose in found.items()
+    }
 
 
 def _moved(pose: Pose, twist: Twist) -> Pose:

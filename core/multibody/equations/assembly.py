@@ -74,7 +74,7 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
     sizes = [size(row.measure or {}, extents) for row in rows]
     for _ in range(_NEWTON_STEPS_OF_POSITIONS):
         table.q = [q.mid() for q in table.q]
-        lines = [row.line(table.q) for row in rows]
+        lines = [{j: x for j, x in row.line(table.q).items() if j not in table.timed} for row in rows]
         residuals = [evaluated(row.measure or {}, table.q) for row in rows]
         # Lines are known as well as the measures are met: rows that are redundant there differ by that much here.
         missed = max((float(abs(x) / y) for x, y in zip(residuals, sizes, strict=True) if y > 0), default=0.0)

@@ -96,11 +96,15 @@ class Damper(TwoEnded):
 
 @dataclass(frozen=True)
 class Motor(TwoEnded):
-    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), in the plane."""
+    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), or by a `drive` (rad), in the plane.
+
+    Both may be formulas of time.
+    """
 
     a: str
-    rate: Number
+    rate: Number | None = None
     b: str = GROUND
+    drive: Number | None = None
     name: str | None = None
     kind: ClassVar[str] = "motor"
 

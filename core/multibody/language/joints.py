@@ -71,11 +71,12 @@ class Slider(TwoEnded):
 
 @dataclass(frozen=True)
 class Rod(TwoEnded):
-    """Two places stay at a distance: the one they start at, unless a length is given."""
+    """Two places stay at a distance: the one they start at, unless a length is given, or a `drive` by time (m)."""
 
     a: Place
     b: Place
     length: Number | None = None
+    drive: Number | None = None
     name: str | None = None
     kind: ClassVar[str] = "rod"
 

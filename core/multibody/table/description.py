@@ -25,6 +25,7 @@ from core.multibody.table import (
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.coordinates import Coordinates, dimension_of
 from core.multibody.table.measures import Measures
+from core.multibody.table.moving_places import driven_works
 from core.multibody.table.rows import add_rows
 
 FORMS = (attraction, chains, contact_geometry, formula_laws, joints, laws, rolling_in_space, strings)
@@ -70,7 +71,11 @@ def described(
     for name, (i, connection) in zip(names, scene.numbered(), strict=True):
         paths[name] = ("connections", i)
         with faults.part():
+            first = len(measures.table.rows)
             add_rows(connection, measures, name, ("connections", i))
+            driven = list(driven_works(measures, name, first))
+            measures.works.extend(driven)
+            measures.conservative = measures.conservative and not driven
     faults.raised()
     if "gravity" not in paths:
         measures.works.extend(_weight(measures))

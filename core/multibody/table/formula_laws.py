@@ -7,7 +7,7 @@ from itertools import starmap
 
 from core.errors import InvalidParameter, Path
 from core.formulas import Node, names_of
-from core.multibody.algebra.polynomials import ONE, Ball, Poly, constant, coordinate, is_zero
+from core.multibody.algebra.polynomials import ONE, Ball, Poly, coordinate, is_zero
 from core.multibody.language.forces import AppliedForce, Damper, Field, Spring, Torque
 from core.multibody.language.motion_formulas import (
     TIME,
@@ -20,10 +20,10 @@ from core.multibody.language.motion_formulas import (
 from core.multibody.laws.law import Input, Law
 from core.multibody.laws.linear import linear_in_rates
 from core.multibody.table.connection_effects import Force, WorkTerm
+from core.multibody.table.formulas_of_time import clock
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import COMPONENTS, Measures
 from core.multibody.table.rows import add_rows
-from core.multibody.table.table import Row
 from core.near_names import near_and_all
 
 Own = Mapping[str, Input]
@@ -93,16 +93,6 @@ def of_place(point: Point) -> dict[str, Input]:
     for axis, form in zip(COMPONENTS, point.at, strict=False):
         found |= {axis: Input(form), f"v{axis}": Input(form, rate=True)}
     return found
-
-
-def clock(measures: Measures) -> int:
-    """Return the coordinate that is time, made once."""
-    table = measures.table
-    if "clock" in table.names:
-        return table.names.index("clock")
-    index = table.coordinate("clock", "s", ONE - ONE)
-    table.rows.append(Row("clock", None, {index: constant(ONE)}, ONE))
-    return index
 
 
 def add_force(

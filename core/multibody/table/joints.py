@@ -8,15 +8,17 @@ from core.multibody.algebra.polynomials import ONE, constant, difference, evalua
 from core.multibody.language.connection import TwoEnded
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.written import GROUND
+from core.multibody.table.formulas_of_time import of_time
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
+from core.multibody.table.moving_places import place_of
 from core.multibody.table.rows import add_rows
 
 
 @add_rows.register
 def pin(connection: Pin, measures: Measures, name: str, path: Path) -> None:
     """Hold two places together, and in space the direction of an axis, if there is one."""
-    a, b = _ends(connection, measures, path)
+    a, b = _ends(connection, measures, name, path)
     measures.coincide(name, a, b, path)
     if connection.axis is None:
         return
@@ -34,7 +36,7 @@ def pin(connection: Pin, measures: Measures, name: str, path: Path) -> None:
 @add_rows.register
 def ball_joint(connection: BallJoint, measures: Measures, name: str, path: Path) -> None:
     """Hold two places of space together."""
-    a, b = _ends(connection, measures, path)
+    a, b = _ends(connection, measures, name, path)
     if measures.dimension == 2:
         raise InvalidParameter((*path, "kind"), 'be "pin" in the plane')
     measures.coincide(name, a, b, path)
@@ -43,14 +45,22 @@ def ball_joint(connection: BallJoint, measures: Measures, name: str, path: Path)
 @add_rows.register
 def rod(connection: Rod, measures: Measures, name: str, path: Path) -> None:
     """Hold two places at a distance."""
-    a, b = _ends(connection, measures, path)
-    measures.rod(name, a, b, connection.length, path)
+    a, b = _ends(connection, measures, name, path)
+    if connection.drive is not None and connection.length is not None:
+        raise InvalidParameter((*path, "drive"), "be left out beside a length")
+    driven = None
+    if connection.drive is not None:
+        where = (*path, "drive")
+        driven = of_time(measures, name, connection.drive, where)
+        if driven is None:
+            driven = constant(measures.numerals.number(connection.drive, where))
+    measures.rod(name, a, b, connection.length, driven, path)
 
 
 @add_rows.register
 def slider(connection: Slider, measures: Measures, name: str, path: Path) -> None:
     """Hold a place on a line that is fixed in a body, and the orientation to that body."""
-    a, b = _ends(connection, measures, path)
+    a, b = _ends(connection, measures, name, path)
     numerals, plane = measures.numerals, measures.dimension == 2
     _two_bodies(a, b, path)
     if connection.direction is not None and connection.slope is not None:
@@ -90,12 +100,10 @@ def track(connection: GuideCurve, measures: Measures, name: str, path: Path) -> 
     measures.on_curve(name, measures.coordinates.point(connection.place, (*path, "place")), connection.on, path)
 
 
-def _ends(connection: TwoEnded, measures: Measures, path: Path) -> tuple[Point, Point]:
-    for end, place in (("a", connection.a), ("b", connection.b)):
-        if place == GROUND:
-            raise InvalidParameter((*path, end), "be a place: of the ground, its coordinates")
-    point = measures.coordinates.point
-    return point(connection.a, (*path, "a")), point(connection.b, (*path, "b"))
+def _ends(connection: TwoEnded, measures: Measures, name: str, path: Path) -> tuple[Point, Point]:
+    ends = (("a", connection.a), ("b", connection.b))
+    a, b = (place_of(measures, name, place, (*path, end)) for end, place in ends)
+    return a, b
 
 
 def _two_bodies(a: Point, b: Point, path: Path) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.errors import InvalidParameter, Path
+from core.balls import as_text
+from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
@@ -24,14 +25,15 @@ from core.multibody.language.forces import AppliedForce, Damper, Motor, Spinning
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.formula_laws import (
-    clock,
     damper_by_law,
     force_by_formulas,
     spring_by_law,
     torque_by_formula,
 )
+from core.multibody.table.formulas_of_time import clock, of_time
 from core.multibody.table.frames import Point
-from core.multibody.table.measures import Measures
+from core.multibody.table.measures import CLOSE, Measures
+from core.multibody.table.moving_places import place_of
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.rows import add_rows
 from core.near_names import near_and_all
@@ -40,7 +42,12 @@ from core.near_names import near_and_all
 @add_rows.register
 def spring(connection: Spring, measures: Measures, name: str, path: Path) -> None:
     """Add a spring between two places: linear, of energy k (l - l_0)^2/2, or with its pull as a formula."""
-    a, b = _ends(measures, connection, path)
+    if connection.law is None:
+        a, b = (
+            place_of(measures, name, place, (*path, end)) for end, place in (("a", connection.a), ("b", connection.b))
+        )
+    else:
+        a, b = _ends(measures, connection, path)
     if connection.law is not None:
         spring_by_law(connection, measures, name, a, b, path)
         return
@@ -112,15 +119,28 @@ def damper(connection: Damper, measures: Measures, name: str, path: Path) -> Non
 
 @add_rows.register
 def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
-    """Hold the rate of a turn."""
-    rate = measures.numerals.number(connection.rate, (*path, "rate"))
-    rates = rate_of(_turn(measures, connection, path))
-    if not is_zero(rate):
-        rates = sum_of_rates((constant(ONE), rates), (constant(-rate), {clock(measures): constant(ONE)}))
-        measures.conservative = False
-    row = measures.roll(name, rates)
-    if not is_zero(rate):
-        measures.works.append(WorkTerm(name, rows=[(row, constant(-rate))]))
+    """Hold the rate of a turn, or the turn itself, which may be formulas of time."""
+    turn = _turn(measures, connection, path)
+    if (connection.rate is None) == (connection.drive is None):
+        raise InvalidParameter(path, "have a rate or a drive")
+    if connection.drive is not None:
+        driven = of_time(measures, name, connection.drive, (*path, "drive"))
+        if driven is None:
+            driven = constant(measures.numerals.number(connection.drive, (*path, "drive")))
+        apart = evaluated(difference(turn, driven), measures.table.q)
+        if not (measures.sketch or abs(apart) < CLOSE):
+            now = as_text(evaluated(turn, measures.table.q), 10)
+            rule = f"be {now} rad at the start, as the bodies are turned"
+            raise PlacesDisagree((*path, "drive"), rule, remedy="change it, or turn the bodies")
+        row = measures.hold(name, difference(turn, driven))
+    else:
+        driven = of_time(measures, name, connection.rate, (*path, "rate"))
+        if driven is None:
+            driven = constant(measures.numerals.number(connection.rate, (*path, "rate")))
+        rates = rate_of(turn)
+        if any(not is_zero(x) for x in driven.values()):
+            rates = sum_of_rates((constant(ONE), rates), (combined((-ONE, driven)), {clock(measures): constant(ONE)}))
+        row = measures.roll(name, rates)
     measures.force(f"{name}.torque", [(row, constant(ONE))], "N m")
 
 
@@ -221,9 +241,9 @@ def torque(connection: Torque, measures: Measures, name: str, path: Path) -> Non
 
 
 def _ends(measures: Measures, connection: TwoEnded, path: Path) -> tuple[Point, Point]:
-    point = measures.coordinates.point
     if connection.b == GROUND:
         raise InvalidParameter((*path, "b"), "be given: a place, or of the ground its coordinates")
+    point = measures.coordinates.point
     return point(connection.a, (*path, "a")), point(connection.b, (*path, "b"))
 
 

@@ -92,27 +92,29 @@ class Measures:
             self.force(f"{name}.{axis}", [(row, constant(ONE))])
         return rows
 
-    def rod(self, name: str, a: Point, b: Point, length: object, path: Path) -> None:
-        """Hold two places at a distance; the force is the pull."""
+    def rod(self, name: str, a: Point, b: Point, length: object, drive: Poly | None, path: Path) -> None:
+        """Hold two places at a distance, which may be driven; the force is the pull."""
         self._two(a, b, path)
         d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]
         now = self.squared(d)
-        if length is None:
-            square, span = now, now.sqrt()
+        if drive is not None:
+            span = drive
+        elif length is None:
+            span = constant(now.sqrt())
         else:
-            span = self.numerals.number(length, (*path, "length"))
-            square = span * span
-        if not square > 0:
-            raise InvalidParameter((*path, "length"), "be greater than 0 m", remedy="hold the places by a pin")
-        if not self.sketch and not abs(now - square) < CLOSE * (now + square):
+            span = constant(self.numerals.number(length, (*path, "length")))
+        size, where = evaluated(span, self.table.q), (*path, "length" if drive is None else "drive")
+        if not size > 0:
+            raise InvalidParameter(where, "be greater than 0 m", remedy="hold the places by a pin")
+        if not self.sketch and not abs(now - size * size) < CLOSE * (now + size * size):
             raise PlacesDisagree(
-                (*path, "length"),
+                where,
                 f"be {float(now.sqrt()):.10g} m, as the places are apart at the start",
                 remedy="leave it out, or move the bodies",
             )
         half = ONE / 2
-        row = self.hold(name, combined((half, dot(d, d)), (-half, constant(square))))
-        self.force(f"{name}.force", [(row, constant(-span))])
+        row = self.hold(name, combined((half, dot(d, d)), (-half, product(span, span))))
+        self.force(f"{name}.force", [(row, combined((-ONE, span)))])
 
     def squared(self, d: Sequence[Poly]) -> Ball:
         """Return the square of a vector at the start."""

@@ -25,8 +25,7 @@ from core.multibody.algebra.polynomials import (
     is_zero,
 )
 from core.multibody.language.contacts import Rolling
-from core.multibody.table.connection_effects import WorkTerm
-from core.multibody.table.formula_laws import clock
+from core.multibody.table.formulas_of_time import clock
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import COMPONENTS, Measures
 from core.multibody.table.rolling import rate_of, rolling_in_plane, sum_of_rates
@@ -93,18 +92,13 @@ class _Surface:
         measures.force(f"{name}.normal", [(gap, constant(ONE))])
         turning = measures.numerals.number(rate, (*self.path, "rate"))
         rows, across = [], perpendicular(n, self.path)
-        driven: list[tuple[int, Poly]] = []
         for e in across:
             parts = [*self._velocity(e), self._spin([-self.radius * x for x in cross(n, e)])]
             if not is_zero(turning):
                 # The surface moves with turning n x d, of which this is the component along e.
                 carried = combined(*((-turning * x, self.d[i]) for i, x in enumerate(cross(e, n))))
                 parts.append((carried, {clock(measures): constant(ONE)}))
-                measures.conservative = False
-                driven.append((len(measures.table.rows), carried))
             rows.append(measures.roll(name, sum_of_rates(*parts)))
-        if driven:
-            measures.works.append(WorkTerm(name, rows=driven))
         for i, axis in enumerate(COMPONENTS):
             terms = [(row, constant(e[i])) for row, e in zip(rows, across, strict=True) if not is_zero(e[i])]
             measures.force(f"{name}.friction.{axis}", terms)

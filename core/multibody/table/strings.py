@@ -233,7 +233,7 @@ def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: String,
         d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
         way = measures.squared(d)
         _require_taut(way.sqrt() if way > 0 else ZERO, _length(measures, length, path), path)
-    measures.rod(part, a.point, b.point, length, path)
+    measures.rod(part, a.point, b.point, length, None, path)
     rod = measures.forces.pop()
     force = measures.force(f"{part}.tension", rod.terms)
     measures.limits.append(Limit("slack", part, force=force))

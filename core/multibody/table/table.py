@@ -127,6 +127,8 @@ class Table:
         Formulas whose values push coordinates.
     q, v : list of balls
         Coordinates and rates at the start.
+    timed : set of int
+        Coordinates of which the time alone decides, so that no assembly of the start moves them.
     """
 
     names: list[str] = field(default_factory=list)
@@ -140,6 +142,7 @@ class Table:
     laws: list[Law] = field(default_factory=list)
     q: list[Ball] = field(default_factory=list)
     v: list[Ball] = field(default_factory=list)
+    timed: set[int] = field(default_factory=set)
 
     def coordinate(self, name: str, unit: str, value: Ball) -> int:
         """Add a coordinate and return its number."""

@@ -1,0 +1,173 @@
+"""Supports, turns, rates and lengths that are driven by formulas of time, against closed forms and mpmath."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from core.errors import InvalidParameter, NotApplicable, PlacesDisagree
+from core.multibody.answer import SceneSolution
+from core.multibody.language.reading import scene_from
+from core.multibody.solve import solve_scene
+from core.systems.methods.runge_kutta_4 import RungeKutta4
+
+TIMES = [0.0, 0.5, 1.0, 2.5]
+ALL = ("accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "work-in-time")
+BOB: dict[str, Any] = {"mass": 1, "at": [1, 0]}
+WHEEL: dict[str, Any] = {"mass": 1, "inertia": 2, "at": [0, 0]}
+
+
+def scene(body: dict[str, Any], *connections: dict[str, Any], gravity: Sequence[Any] = (0, 0)) -> dict[str, Any]:
+    return {"gravity": list(gravity), "bodies": {"p": body}, "connections": list(connections)}
+
+
+def answer(description: dict[str, Any], times: Sequence[float] = tuple(TIMES), **more: Any) -> SceneSolution:
+    return solve_scene(scene_from(description), np.array(times), more.pop("outputs", ALL), **more)
+
+
+def compared(found: SceneSolution, column: str, exact: Callable[[mp.mpf], Any]) -> None:
+    assert found.trajectory is not None
+    own = found.trajectory.columns[column]
+    with mp.workdps(40):
+        wanted = np.array([np.array(exact(mp.mpf(t)), dtype=np.float64) for t in found.trajectory.time.tolist()])
+    apart = np.abs(own.values.reshape(wanted.shape) - wanted)
+    assert np.max(apart) <= own.error + 2.0**-52 * np.max(np.abs(wanted))
+    assert own.error < 1e-10
+
+
+def rod(b: Sequence[Any], **more: Any) -> dict[str, Any]:
+    return {"kind": "rod", "name": "r", "a": "p", "b": list(b), **more}
+
+
+def test_kapitzas_pendulum() -> None:
+    """With the angle a from the x axis and the support at h(t): a'' = -(g + h'') cos(a)."""
+    found = answer(scene(BOB, rod([0, "A*sin(w*t)"]), gravity=(0, -10)) | {"let": {"A": 0.1, "w": 30}})
+    with mp.workdps(30):
+        angle = mp.odefun(
+            lambda t, y: [y[1], -(10 - 90 * mp.sin(30 * t)) * mp.cos(y[0])], 0, [0, -3], tol=mp.mpf("1e-22")
+        )
+        compared(found, "p.position", lambda t: [mp.cos(angle(t)[0]), mp.sin(angle(t)[0]) + mp.sin(30 * t) / 10])
+
+    def brought(t: mp.mpf) -> mp.mpf:
+        """Return what the energy has gained: that of the start is 9/2 at the height zero, the bob moving with it."""
+        a, rate = angle(t)
+        x, y = -mp.sin(a) * rate, mp.cos(a) * rate + 3 * mp.cos(30 * t)
+        return (x**2 + y**2) / 2 + 10 * (mp.sin(a) + mp.sin(30 * t) / 10) - mp.mpf(0)
+
+    with mp.workdps(30):
+        compared(found, "r.work", brought)
+
+
+def test_a_support_that_shakes_a_spring() -> None:
+    """x'' = -4 (x - 1 - sin(3 t)/2) from rest at 1: x = 1 + (4/2)(sin(3t) - (3/2) sin(2t))/(4 - 9)."""
+    spring = {"kind": "spring", "name": "s", "a": "p", "b": ["sin(3*t)/2 - 10", 0], "stiffness": 4, "rest_length": 11}
+    line = {"kind": "slider", "a": "p", "b": [0, 0]}
+    found = answer(scene(BOB, line, spring))
+    compared(found, "p.position", lambda t: [1 - mp.mpf(2) / 5 * (mp.sin(3 * t) - 1.5 * mp.sin(2 * t)), 0])
+
+
+def test_a_pin_that_is_carried() -> None:
+    """A body without gravity at a support that is lifted: its weight is m a."""
+    found = answer(scene({"mass": 2, "at": [0, 0]}, {"kind": "pin", "name": "h", "a": "p", "b": ["3*t", "t^2/2"]}))
+    compared(found, "p.position", lambda t: [3 * t, t**2 / 2])
+    compared(found, "h.y", lambda t: 2)
+    compared(found, "h.work", lambda t: t**2)
+
+
+def test_a_motor_by_the_angle_and_by_the_rate() -> None:
+    """An inertia J: torque J a'', work J (rate^2 - rate_0^2)/2."""
+    by_angle = answer(scene(WHEEL, {"kind": "motor", "name": "m", "a": "p", "drive": "sin(3*t)"}))
+    compared(by_angle, "p.angle", lambda t: mp.sin(3 * t))
+    compared(by_angle, "m.torque", lambda t: -18 * mp.sin(3 * t))
+    compared(by_angle, "m.work", lambda t: 9 * (mp.cos(3 * t) ** 2 - 1))
+    by_rate = answer(scene(WHEEL, {"kind": "motor", "name": "m", "a": "p", "rate": "1 - exp(-2*t)"}))
+    compared(by_rate, "p.angle", lambda t: t - (1 - mp.exp(-2 * t)) / 2)
+    compared(by_rate, "m.torque", lambda t: 4 * mp.exp(-2 * t))
+    compared(by_rate, "m.work", lambda t: (1 - mp.exp(-2 * t)) ** 2)
+
+
+def test_a_bob_is_drawn_in() -> None:
+    """At the length l(t) with the angular momentum 2: pull (4/l^3 - l''), here l'' = 0."""
+    bob = BOB | {"velocity": [-0.1, 2]}
+    found = answer(scene(bob, rod([0, 0], drive="1 - t/10")))
+
+    def length(t: mp.mpf) -> mp.mpf:
+        return 1 - t / 10
+
+    def place(t: mp.mpf) -> list[mp.mpf]:
+        # The angle is the integral of 2/l^2.
+        angle = 20 * (1 / length(t) - 1)
+        return [length(t) * mp.cos(angle), length(t) * mp.sin(angle)]
+
+    compared(found, "p.position", place)
+    compared(found, "r.force", lambda t: 4 / length(t) ** 3)
+    compared(found, "r.work", lambda t: 2 / length(t) ** 2 - 2)
+
+
+@pytest.mark.parametrize(
+    ("formula", "exact"),
+    [
+        ("exp(-t) - cosh(t/2)/(1 + t)^2", lambda t: mp.exp(-t) - mp.cosh(t / 2) / (1 + t) ** 2),
+        ("log(1 + t)*sqrt(1 + 3*t)", lambda t: mp.log(1 + t) * mp.sqrt(1 + 3 * t)),
+        ("tan(t/2) + atan(2*t) - asin(t/4)", lambda t: mp.tan(t / 2) + mp.atan(2 * t) - mp.asin(t / 4)),
+        ("sinh(t/3)*tanh(1 + t) - acos(t/5)", lambda t: mp.sinh(t / 3) * mp.tanh(1 + t) - mp.acos(t / 5)),
+        ("(2 + t)^1.5 - 2^t + (1 + t)^-3 + sin(t)^5", lambda t: (2 + t) ** 1.5 - 2**t + (1 + t) ** -3 + mp.sin(t) ** 5),
+    ],
+)
+def test_every_function_of_time(formula: str, exact: Callable[[mp.mpf], mp.mpf]) -> None:
+    with mp.workdps(40):
+        start = mp.nstr(exact(mp.mpf(0)), 35)
+    carried = scene({"mass": 1, "at": [0, start]}, {"kind": "pin", "name": "h", "a": "p", "b": [0, formula]})
+    found = answer(carried, TIMES[:3], outputs=("trajectory", "forces-in-time"))
+    compared(found, "p.position", lambda t: [0, exact(t)])
+    compared(found, "h.y", lambda t: mp.diff(exact, t, 2))
+
+
+def test_a_method_follows_what_is_driven() -> None:
+    shaken = scene(BOB, rod([0, "sin(3*t)/10"]), gravity=(0, -10))
+    own, other = (
+        answer(shaken, outputs=("trajectory",), method=method).trajectory for method in (None, RungeKutta4(0.01))
+    )
+    assert own is not None
+    assert other is not None
+    a, b = (one.columns["p.position"] for one in (own, other))
+    assert 0.0 < np.max(np.abs(a.values - b.values)) <= b.error
+
+
+def test_a_sketch_is_moved_to_where_its_support_begins() -> None:
+    sketch = scene(BOB | {"at": [1.5, 0.2]}, rod([0, "0.2 + sin(3*t)"], length=1), gravity=(0, -10))
+    found = answer(sketch | {"assemble": "nearest"}, [0.0, 0.3], outputs=("trajectory",))
+    assert found.trajectory is not None
+    np.testing.assert_allclose(found.trajectory.columns["p.position"].values[0], [1, 0.2], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("formula", "rule"),
+    [
+        ("abs(t)", "one piece"),
+        ("atan2(t, 1)", "do without atan2"),
+        ("sin(x)", 'unlike "x"'),
+        ("1/t", "a value at the start"),
+        ("sqrt(t)", "a rate at the start"),
+        ("t^1.5", "a rate at the start"),
+    ],
+)
+def test_formulas_that_cannot_drive_are_refused(formula: str, rule: str) -> None:
+    with pytest.raises(InvalidParameter, match=rule) as refused:
+        answer(scene(BOB, rod([0, formula]), gravity=(0, -10)))
+    assert tuple(refused.value.path) == ("connections", 0, "b", 1)
+
+
+def test_drives_that_do_not_fit_are_refused() -> None:
+    with pytest.raises(PlacesDisagree, match="0 rad"):
+        answer(scene(WHEEL, {"kind": "motor", "name": "m", "a": "p", "drive": "cos(t)"}))
+    with pytest.raises(InvalidParameter, match="a rate or a drive"):
+        answer(scene(WHEEL, {"kind": "motor", "a": "p"}))
+    with pytest.raises(InvalidParameter, match="beside a length"):
+        answer(scene(BOB, rod([0, 0], drive="1 + t", length=1)))
+    with pytest.raises(NotApplicable, match="equilibria"):
+        answer(scene(BOB, rod([0, "sin(t)"])), outputs=("equilibria",))
