@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 
 from core.multibody.undecided import UNDECIDED
+from docs.site import thumbnails
 from docs.site.__main__ import write
 from docs.site.figures import FIGURES, FOLDER, polhodes
 from docs.site.links import linked_files, moved
 from docs.site.navigation import DOCS, GENERATED, ROOT, navigation, pages, paths_in
 from docs.site.reference import reference
+from docs.site.thumbnails import answer_of, thumbnail
 from service.problems import REGISTRY
 from service.settings import Settings
 
@@ -85,3 +87,8 @@ def test_the_polhodes_are_those_that_the_service_draws() -> None:
     ours, theirs = ([float(x) for x in NUMBER.findall(text)] for text in (drawn, kept))
     # Pixels are rounded to tenths.
     assert ours == pytest.approx(theirs, abs=0.11)
+
+
+def test_a_thumbnail_is_the_path_of_its_scene() -> None:
+    # Pixels are whole numbers; a yo-yo falls along a line.
+    assert thumbnail(answer_of("yo-yo")) == (thumbnails.FOLDER / "yo-yo.svg").read_text()
