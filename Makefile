@@ -182,7 +182,7 @@ attacks: kernels
 clients: kernels
 	$(BIN)/python -m pytest -q tests/clients/generated_clients.py tests/clients/generated_typescript.py
 
-.PHONY: fuzz fuzz-loop schemathesis soak scheduling health calibration image dial studies mutants
+.PHONY: fuzz fuzz-loop schemathesis soak scheduling health image dial studies mutants
 
 # Small changes of the code, each of which a test has to notice: MUTANTS of them, drawn by MUTANTS_SEED.
 MUTANTS ?= 300
@@ -209,9 +209,6 @@ scheduling: environment
 
 health: environment
 	$(BIN)/python -m benchmarks.service_health
-
-calibration: environment
-	$(BIN)/python -m benchmarks.calibration
 
 # Studies by real servers on real clusters, with kills; then what they cost.
 studies: environment

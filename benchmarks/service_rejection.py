@@ -123,7 +123,7 @@ def refused(route: PostRoute, body: bytes) -> tuple[float, bytes]:
     since = time.process_time()
     document = b""
     try:
-        ANSWERING.price(route, ANSWERING.read(route, body))
+        ANSWERING.read(route, body)
     except Refusal as refusal:
         document = refusal.problem.body()
     except MechanicsError as error:

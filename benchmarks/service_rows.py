@@ -62,7 +62,6 @@ def table() -> tuple[PostRoute, ...]:
             path="/rows",
             operation_id="rows",
             handle=handle,
-            price=lambda question, budget: 0.0,
             examples={},
         ),
         replace(

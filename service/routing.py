@@ -75,11 +75,6 @@ Columns = Mapping[Path, NDArray[np.float64]]
 """Numbers of many questions, shape (n,) each, by their place in the request."""
 
 
-def free(question: Any, budget: Budget) -> float:
-    """Price of a question that costs less than reading it."""
-    return 0.0
-
-
 def never(question: Any) -> bool:
     """Say that no question of a route is small."""
     return False
@@ -119,9 +114,8 @@ class PostRoute(Documented):
     question, answer : type
         Pydantic models, or unions of two. Requests are validated by the first; the second only documents.
     handle : callable
-        From question and budget to the fields of the answer; warnings under ``"warnings"``.
-    price : callable
-        Predicted time of `handle` in seconds; refuses what exceeds the budget.
+        From question and budget to the fields of the answer; warnings under ``"warnings"``. It refuses what exceeds the
+        budget by counts that the question states before it computes anything.
     small : callable
         Whether a question may be begun in the event loop, by counts that it states; decided without computing anything.
     examples : mapping
@@ -150,7 +144,6 @@ class PostRoute(Documented):
     question: Any
     answer: Any
     handle: Callable[[Any, Budget], Answer]
-    price: Callable[[Any, Budget], float] = free
     small: Callable[[Any], bool] = never
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
@@ -181,11 +174,14 @@ class StudyRoute(PostRoute):
     ----------
     members : callable
         From question and budget to what answers the study's members.
+    require : callable
+        Refuses what is wrong with a study whatever its question's answer.
     paths : frozenset of str
         Of the routes whose questions may have studies.
     """
 
     members: Callable[[Any, Budget], Any]
+    require: Callable[[Any, Budget], object]
     paths: frozenset[str]
 
     @property
@@ -195,6 +191,7 @@ class StudyRoute(PostRoute):
 
     def answer_for_plan(self, question: Any, budget: Budget) -> Answer | None:
         """Return None: the question that is varied is not run."""
+        self.require(question, budget)
         return None
 
 

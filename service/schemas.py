@@ -203,6 +203,19 @@ def number_of(times: Any) -> int:
     return len(times) if isinstance(times, list) else int(times.count)
 
 
+def ends_of(times: Any) -> list[float]:
+    """Return times among which are the least and the largest (s)."""
+    if isinstance(times, list):
+        return times
+    # A single time is the start, wherever the stop is.
+    return [times.start, times.stop] if times.count > 1 else [times.start]
+
+
+def in_closed_form(method: Any) -> bool:
+    """Return whether nothing is to be integrated."""
+    return method is None or bool(method.kind == "closed-form")
+
+
 def sample_count(times: Any, budget: Budget) -> int:
     """Return the number of samples without making them.
 

@@ -33,20 +33,13 @@ class RequestHandler:
         """Return the question that a body asks; see `Reader.read`."""
         return self._readers[route.path](body, npz=npz)
 
-    def price(self, route: PostRoute, question: Any) -> float:
-        """Return the predicted time of an answer (s), or raise `BudgetExceeded`."""
-        return route.price(question, self._budget)
-
     def answer(self, route: PostRoute, question: Any, attempt: int = 0) -> Answer:
         """Return the whole answer: signature, warnings, fields; from the second attempt on by `PostRoute.in_short`."""
         return signed((route.handle, *route.in_short)[attempt](question, self._budget))
 
     def study_of_one(self, route: PostRoute, question: Any) -> Answer:
-        """Return the plan of a study in which nothing varies, or raise `BudgetExceeded`.
-
-        What its answer takes is not known before (`bytes`).
-        """
-        plan = {"path": route.path, "count": 1, "together": False, "seconds": self.price(route, question), "bytes": 0}
+        """Return the plan of a study in which nothing varies; what its answer takes is not known before."""
+        plan = {"path": route.path, "count": 1, "together": False, "seconds": 0.0, "bytes": 0}
         return plan | {name: [] for name in ("shape", "inputs", "figures")}
 
     def warm(self, *, scenes_first: bool = False, work: float = inf) -> None:

@@ -125,8 +125,6 @@ def answer(terms: Terms, task: Task) -> Document | Problem | Failed:
         question = handler.read(route, task.body, npz=task.npz)
         if task.later:
             return composed(route, handler.study_of_one(route, question), None)
-        # Refuses what exceeds the budget.
-        handler.price(route, question)
         return composed(route, handler.answer(route, question, task.attempt), task.media)
     except Refusal as refusal:
         return refusal.problem

@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from functools import cache
-from math import inf
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
-from core.bodies.principal_inertia import EPSILON, PrincipalInertia, Symmetry
+from core.bodies.principal_inertia import PrincipalInertia, Symmetry
 from core.bodies.rounding_errors import rounding_errors
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
 from core.quantities import Unit
 from core.systems.budget import Budget
-from service.execution.cost_model import CalibratedCost, quickest, speed_of
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Matrix, Ratio, Request, Vector, View, number_of
 
-LOOKED_INTO = 8_000
-"""Points of a body, as `counts` has them, up to which it is looked at to foresee a motion; larger ones are not answered
-in the server process."""
-
-
 SMALL_BODY = 400
-"""Points of a body, likewise, up to which a request may be begun in the event loop: no composite has so few."""
+"""Points of a body up to which a request may be begun in the event loop: no composite has so few."""
 
 FEW_SAMPLES = 256
 """Samples of a closed form up to which a request may be begun in the event loop."""
@@ -121,11 +112,6 @@ def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
     return None if inertia is None else {"moments": inertia.moments, "axes": inertia.axes}
 
 
-def counts(question: Any, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a question about a body."""
-    return {"question": 1.0, "points": _size(question.body), question.body.kind: 1.0}
-
-
 def is_small(question: Any) -> bool:
     """Return whether a question is about a small body."""
     return _size(question.body) <= SMALL_BODY
@@ -134,33 +120,6 @@ def is_small(question: Any) -> bool:
 def few_times(times: Any) -> bool:
     """Return whether a question's times are few."""
     return number_of(times) <= FEW_SAMPLES
-
-
-def moments_to_foresee(methods: Iterable[Any], body: Any) -> list[float] | None:
-    """Return the principal moments of a body, ascending (kg m^2), if a method chooses its steps by the motion.
-
-    None if the steps are known without, or for a body so large that its question is not answered in this process.
-    """
-    if _size(body) > LOOKED_INTO or not any(hasattr(method, "tolerance") for method in methods):
-        return None
-    moments: list[float] = properties_of(body).principal_of_motion.moments.tolist()
-    return moments
-
-
-def speed_to_follow(methods: Sequence[Any], body: Any, speed: float) -> float:
-    """Return the angular speed that tells how often methods evaluate a free motion that starts with one (rad/s).
-
-    In axes that are not principal, rates carry a rounding that grows with the ratio of the principal moments. A method
-    that takes it for the motion shortens its steps in proportion, once it exceeds the tolerance.
-    """
-    moments = moments_to_foresee(methods, body)
-    if moments is None or not speed:
-        return speed
-    speed, least, largest = quickest(speed, moments), abs(moments[0]), moments[2]
-    if np.count_nonzero(properties_of(body).principal_of_motion.axes) == 3:
-        return speed
-    tolerance = min(method.tolerance for method in methods if hasattr(method, "tolerance"))
-    return speed_of([speed * max(1.0, EPSILON * largest / tolerance / least if least else inf)])
 
 
 def _size(body: Any) -> int:
@@ -204,7 +163,6 @@ BODIES = (
         MassPropertiesRequest,
         MassPropertiesAnswer,
         mass_properties,
-        CalibratedCost("mass_properties", counts),
         is_small,
         warming=({"body": TETRAHEDRON}, {"body": CLOUD}),
         errors=errors,

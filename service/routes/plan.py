@@ -16,16 +16,16 @@ from pydantic import Field
 from core.errors import BudgetExceeded, MechanicsError
 from core.systems.budget import Budget
 from core.systems.methods import Method
-from service.execution.cost_model import ends_of, in_closed_form
-from service.execution.cost_model import evaluations as evaluations_of
+from core.systems.methods.fixed_step import FixedStep
 from service.execution.request_handler import signed
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_stream import composed
 from service.routes.described_answer import ScenePart
+from service.routes.step_counts import EXPLICIT, least_evaluations
 from service.routing import Answer, ExpectedDuration, PostRoute, never
-from service.schemas import DecimalString, Envelope, Ratio, Request, View
+from service.schemas import DecimalString, Envelope, Ratio, Request, View, ends_of, in_closed_form
 from service.schemas import Fault as FaultView
 
 WITHIN = "/request"
@@ -131,8 +131,6 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
             return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
         try:
             request = reader(route.path).read(json.dumps(question.request).encode())
-            # Refuses what exceeds the budget.
-            route.price(request, budget)
             return {"path": route.path, **planned(route, request, budget)}
         except Refusal as refusal:
             return _refused(route.path, refusal.problem, WITHIN)
@@ -236,17 +234,23 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
 
 
 def _evaluations(request: Any, budget: Budget) -> int | None:
-    """Return the number of evaluations of a method with a fixed step, or refuse them; 0 where none is run."""
+    """Return the number of evaluations of a method with a fixed step, 0 where none is run, None if it is not known.
+
+    Raises
+    ------
+    BudgetExceeded
+        For more than the budget.
+    """
     method = getattr(request, "method", None)
     if in_closed_form(method) or request.times is None:
         return 0 if getattr(request, "methods", None) is None else None
-    if not hasattr(method, "step"):
+    if not isinstance(method, FixedStep):
         return None
-    count = round(evaluations_of(method, request.times, 0.0))
+    count = least_evaluations(method, request.times)
     if count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
-    return count
+    return count if isinstance(method, EXPLICIT) else None
 
 
 def _members(request: Any) -> int | None:

@@ -14,10 +14,9 @@ from core.scenes import Scene
 from core.scenes.figures import Errors, SceneEvent
 from core.scenes.named_scene import NamedScene
 from core.systems.budget import Budget
-from core.systems.methods import Method, SymmetricSplitting
+from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, calibration, effort, in_closed_form, numbers
 from service.responses.svg import SVG
 from service.routes.bodies import few_times
 from service.routes.motion_figures import scene_drawing
@@ -32,22 +31,16 @@ from service.schemas import (
     Signed,
     Times,
     View,
-    sample_count,
+    in_closed_form,
     sample_times,
 )
 
 TIMES: Any = Field(default=None, description="Measured from the given state, of either sign, in any order.")
-SAMPLE_IN_BALLS = 1e-4
-"""Time of a sample that is evaluated in balls and not in doubles, as those of a new scene are at first (s)."""
 METHOD: Any = Field(
     default=None,
     description="Computes the samples in place of the closed form, from which their error is measured, and is answered "
     "whatever that is. Events are those of the motion itself, and none but the last may interrupt it.",
 )
-QUICK = 10.0
-"""How fast (rad/s) a scene is taken to move, where a method chooses its steps."""
-RUNS = ("runs", "samples", "evaluations")
-"""What is counted of a method."""
 OUTPUTS: Any = Field(default=None, min_length=1, description="What to compute; by default everything.")
 
 
@@ -191,42 +184,6 @@ def answer_of(
     }
 
 
-def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a scene."""
-    samples = 0 if question.times is None else sample_count(question.times, budget)
-    figures = 1.0 if question.outputs is None else len(question.outputs) / 10.0
-    return {
-        "question": 1.0,
-        "figures": figures,
-        "motions": float(samples > 0),
-        "times": samples,
-        **numbers(samples, question.round),
-        **_effort(question, samples),
-    }
-
-
-def _effort(question: Any, samples: int) -> dict[str, float]:
-    """Return what is counted of the method that is named."""
-    if question.times is None:
-        return {}
-    found = effort(question.method, question.times, QUICK, samples)
-    splitting = f"evaluations of {SymmetricSplitting.kind}"
-    # A free body is split into three parts, a scene into two.
-    return found | {splitting: found[splitting] * 3.0 / 5.0} if splitting in found else found
-
-
-def price_of(scene: type[NamedScene]) -> CalibratedCost:
-    """Return the price of questions about a scene; as long as it is not measured, that of the costliest that is."""
-    operation, measured = operation_of(scene), calibration().seconds
-    # A method takes about as long on every equation as small as that of a free rotation.
-    methods = {name: cost for name, cost in measured["rotation_trajectory"].items() if name.split(" of ")[0] in RUNS}
-    if operation in measured:
-        return CalibratedCost(operation, scene_counts, methods)
-    known = [costs for name, costs in measured.items() if name.startswith("scene_")]
-    highest = {name: max(costs.get(name, 0.0) for costs in known) for costs in known for name in costs}
-    return CalibratedCost(operation, scene_counts, methods | highest | {"times": SAMPLE_IN_BALLS})
-
-
 @cache
 def scene_routes(scenes: tuple[type[NamedScene], ...]) -> tuple[PostRoute, ...]:
     """Return one route for each scene."""
@@ -243,7 +200,6 @@ def _route(scene: type[NamedScene]) -> PostRoute:
         request_of(scene),
         answer,
         answering(scene),
-        price_of(scene),
         lambda question: question.times is None or (few_times(question.times) and in_closed_form(question.method)),
         examples={name: Example(one.summary, one.question) for name, one in scene.examples.items()},
         warming=scene.warming,

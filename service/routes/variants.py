@@ -11,7 +11,7 @@ from pydantic import Field
 
 from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.graded_question import GradedQuestion
-from core.assessment.propagation import MOST_CHANGED_NUMBERS, at, numbers_of
+from core.assessment.propagation import at
 from core.assessment.results import reference_view
 from core.assessment.variants import Constraint, Member, Variants
 from core.assessment.varied_input import LONGEST_WORD, VariedInput
@@ -20,7 +20,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.responses.json_rows import written
-from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, EndpointRequest, QuestionTable
+from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable
 from service.routes.assessments.views import ReferenceFigure
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, View
@@ -34,14 +34,6 @@ LARGEST_FIGURE = 9
 MOST_NUMBERS = 100_000
 """In the figures of all variants."""
 
-EXPECTED_DRAWS = 4
-"""For a member, where anything is required of it: a guess, by which the work is predicted."""
-
-EXPECTED_FIELDS = 5
-"""Of an answer, that have figures."""
-
-SECONDS_OF_ASKING = 2e-4
-"""A changed question, beside its own price: reading it and finding its figures."""
 
 NO_FIGURES = ("signature", "warnings", "accuracy", "work", "model")
 """Fields of answers that are not about the motion."""
@@ -149,19 +141,6 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
             "warnings": warnings,
         }
 
-    def price(question: VariantsRequest, budget: Budget) -> float:
-        once = table.price(question.question, budget)
-        inputs = sum(1 for _ in numbers_of(question.question.request))
-        required = question.constraints or question.max_condition is not None
-        # Each number is changed, for each field of the answer that has figures.
-        named = question.quantities
-        fields = (
-            EXPECTED_FIELDS if named is None else len({pointer.split("/")[1] for pointer in named if "/" in pointer})
-        )
-        changes = min(inputs, MOST_CHANGED_NUMBERS) * fields * (1 if question.input_uncertainty is None else 3)
-        each = (EXPECTED_DRAWS if required else 1) + changes
-        return once + question.count * (SECONDS_OF_PROOF + (once + SECONDS_OF_ASKING) * each)
-
     return PostRoute(
         "/v1/variants",
         "vary",
@@ -170,7 +149,6 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
         VariantsRequest,
         VariantsAnswer,
         vary,
-        price,
         description=DESCRIPTION,
     )
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import exp, log
 from typing import Annotated, Any
 
 import numpy as np
@@ -11,7 +10,6 @@ from pydantic import Field
 
 from core.bodies import Body
 from core.errors import InvalidParameter, inside_field
-from core.multibody.motion.generic_equation import weight_of
 from core.multibody.motion.modelling import system_of
 from core.notices import Notice
 from core.quantities import AngularVelocity, Tolerance
@@ -19,29 +17,16 @@ from core.rotation.torque_free import TorqueFree
 from core.scenes import Scene as NamedScene
 from core.scenes.sampled_motion import ComparableEquation
 from core.systems.budget import Budget
-from core.systems.methods import DormandPrince853, Lsoda, Method, Radau
+from core.systems.methods import Method
 from core.systems.system import InitialValueProblem
 from core.work_precision import (
     DEFAULT_RUNS,
-    SCIPY_TOLERANCES,
-    STEPS_PER_OWN_TIME,
-    TOLERANCES,
     Measurement,
     work_precision,
 )
-from service.execution.cost_model import (
-    CalibratedCost,
-    calibration,
-    effort,
-    ends_of,
-    evaluations,
-    extent,
-    speed_of,
-)
 from service.requests.described_scene import SceneDescription
 from service.responses.svg import SVG, Curve, Level, log_log
-from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.described_scenes import QUICK
+from service.routes.bodies import properties_of
 from service.routes.rotation.trajectory import TIMES
 from service.routing import Answer, PostRoute
 from service.schemas import (
@@ -51,16 +36,11 @@ from service.schemas import (
     Seconds,
     Times,
     View,
+    ends_of,
     fields_of,
     require_one,
-    sample_count,
     sample_times,
 )
-
-LADDER_RADIANS = 50.0
-"""How far the body turns in the motions on which ladders are measured."""
-
-SCIPY_KINDS = (Lsoda.kind, Radau.kind)
 
 
 class WorkPrecisionRequest(Request):
@@ -146,6 +126,7 @@ class WorkPrecisionAnswer(Envelope):
 def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Answer:
     """Answer with every method's errors and work."""
     warnings: Sequence[Notice] = ()
+    times = sample_times(question.times, budget)
     if question.scene is not None:
         require_one(question, "body", "scene", "named_scene")
         with inside_field("scene"):
@@ -159,7 +140,6 @@ def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Ans
         body, rates = question.rotation()
         system = turning = TorqueFree(properties_of(body), np.array(rates))
         warnings = turning.warnings
-    times = sample_times(question.times, budget)
     # The budget is for the question, and each of its runs has an equal share.
     share = max(1, budget.evaluations // ((1 + question.repeats) * _runs(question)))
     found = work_precision(
@@ -175,77 +155,6 @@ def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Ans
 
 def _runs(question: WorkPrecisionRequest) -> int:
     return DEFAULT_RUNS if question.methods is None else len(question.methods)
-
-
-def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a comparison; a ladder depends on the motion and is counted whole."""
-    samples, repeats = sample_count(question.times, budget), 1 + question.repeats
-    runs = _runs(question)
-    if question.scene is not None:
-        bodies, connections = float(len(question.scene.bodies)), float(len(question.scene.connections))
-        weight = weight_of(round(min(1e4, 3.0 * bodies + connections)))
-        return _counts_of_scene(bodies + connections, weight, question, budget)
-    if question.named_scene is not None:
-        return _counts_of_scene(1.0, 1, question, budget)
-    body, rates = question.rotation()
-    found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
-    if question.methods is None:
-        found |= {"ladders": repeats, "ladder samples": repeats * samples}
-        adaptive = (Lsoda(min(SCIPY_TOLERANCES)), DormandPrince853(min(TOLERANCES)))
-        speed = speed_to_follow(adaptive, body, speed_of(rates))
-        radians = speed * extent(question.times) - LADDER_RADIANS
-        return found | _long_ladder(radians, budget.evaluations // (repeats * runs), repeats)
-    speed = speed_to_follow(question.methods, body, speed_of(rates))
-    for method in question.methods:
-        for name, count in effort(method, question.times, speed, samples, repeats).items():
-            found[name] = found.get(name, 0.0) + count
-    return found
-
-
-def _counts_of_scene(size: float, weight: int, question: WorkPrecisionRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a comparison on a scene; the motion that it is measured against included.
-
-    Parameters
-    ----------
-    size : float
-        Bodies and connections.
-    weight : int
-        Of an evaluation.
-    """
-    repeats, samples = 1 + question.repeats, sample_count(question.times, budget)
-    if question.methods is None:
-        share = budget.evaluations // (repeats * DEFAULT_RUNS * weight)
-        spent = _long_ladder(QUICK * extent(question.times), share, repeats)
-    else:
-        spent = {}
-        for method in question.methods:
-            name = f"evaluations of {method.kind}"
-            spent[name] = spent.get(name, 0.0) + repeats * evaluations(method, question.times, QUICK)
-    runs = _runs(question)
-    return spent | {
-        "measured": runs * (1.0 + size),
-        "measured samples": runs * samples * size,
-        "evaluations by their weight": weight * sum(spent.values()),
-        "evaluations by SciPy": sum(spent.get(f"evaluations of {kind}", 0.0) for kind in SCIPY_KINDS),
-    }
-
-
-def _long_ladder(radians: float, share: int, repeats: int) -> dict[str, float]:
-    """Return what is counted of a ladder on a motion over so many radians, beyond those of measured ladders."""
-    if not radians > 0.0:
-        return {}
-    counts: dict[str, float] = {}
-    for kind, cost in calibration().methods.items():
-        if kind in SCIPY_KINDS or kind == DormandPrince853.kind:
-            tolerances = SCIPY_TOLERANCES if kind in SCIPY_KINDS else TOLERANCES
-            # One that runs out of its share has spent it.
-            spent = [min(share, radians * exp(cost["evaluations"] + cost["exponent"] * log(t))) for t in tolerances]
-        else:
-            # One that would is refused before it runs.
-            steps = [cost["evaluations"] * number * radians for number in STEPS_PER_OWN_TIME]
-            spent = [count for count in steps if count <= share]
-        counts[f"evaluations of {kind}"] = repeats * sum(spent)
-    return counts
 
 
 def drawn(answer: Answer) -> bytes:
@@ -276,7 +185,6 @@ WORK_PRECISION = (
         WorkPrecisionRequest,
         WorkPrecisionAnswer,
         answer_work_precision,
-        CalibratedCost("work_precision", work_precision_counts),
         description="`Accept: image/svg+xml` returns the same as a figure.",
         representations={SVG: drawn},
     ),

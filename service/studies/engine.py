@@ -125,7 +125,7 @@ class Engine:
         if futures and self._cluster.connected:
             client = self._cluster.client
             # A thread cannot be ended: processes that would be busy for long with these members are.
-            long = unfinished.each > CHUNK_SECONDS
+            long = unfinished.study.whole or unfinished.each > CHUNK_SECONDS
             busy = _processes_with({future.key for future in futures}, client) if long else []
             client.cancel(futures, force=True)
             self._end_processes(busy)

@@ -164,6 +164,8 @@ class Studies:
                 if context.key is not None:
                     context.key.charge(-seconds)
                 raise
+            if context.key is not None:
+                self._supervisor.charge(identity, context.key, seconds)
         await run_in_daemon_thread(self._supervisor.ensure)
         study = await self._own(context, identity)
         location = f"{PATH}/{identity}".encode()
@@ -192,10 +194,6 @@ class Studies:
         study = await self._own(context)
         if study.unfinished:
             await self._in_thread(lambda: self._store.end(study.id, DISMISSED, "dismissed by its client"))
-            if context.key is not None:
-                # What is not going to be computed is given back.
-                left = study.plan["seconds"] * (1.0 - study.done / study.count)
-                context.key.charge(-left)
             await self._send(context, signed(state_of(await self._own(context))))
             return
 

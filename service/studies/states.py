@@ -61,7 +61,7 @@ def state_of(study: Study) -> dict[str, Any]:
 
 
 def _end(study: Study, now: float) -> float | None:
-    """Return when an unfinished study should end: by its price, and then by how long its members have taken."""
+    """Return when an unfinished study should end: by what is predicted, and then by how long its members have taken."""
     if not study.unfinished:
         return None
     if not study.done or study.started is None:

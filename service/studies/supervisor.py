@@ -7,8 +7,10 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from threading import Lock
 
+from service.http.keys import Key
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.problems import Refusal
@@ -48,12 +50,17 @@ class Supervisor:
         self.store = Store(folder)
         self.results = settings.studies_results or str(folder / "studies")
         self._ownership = Ownership(folder)
+        self._charged: dict[str, tuple[Key, float]] = {}
         self._runner: subprocess.Popen[bytes] | None = None
         self._turn = Lock()
 
     def files(self) -> ChunkFiles:
         """Return where results are stored."""
         return ChunkFiles(self.results)
+
+    def charge(self, identity: str, key: Key, seconds: float) -> None:
+        """Have a key that was charged some time for a study be charged, at its end, what it has taken (s)."""
+        self._charged[identity] = key, seconds
 
     def ensure(self) -> None:
         """Start the process, unless there is one that works on this folder."""
@@ -80,7 +87,8 @@ class Supervisor:
         cleaned = -CLEAN_EVERY
         while True:
             try:
-                await asyncio.to_thread(self._look)
+                for key, seconds in await asyncio.to_thread(self._look):
+                    key.charge(seconds)
                 if time.monotonic() - cleaned > CLEAN_EVERY:
                     cleaned = time.monotonic()
                     await asyncio.to_thread(self.clean)
@@ -88,7 +96,8 @@ class Supervisor:
                 LOG.error("the studies cannot be looked after: %s", fault)
             await asyncio.sleep(LOOK_EVERY)
 
-    def _look(self) -> None:
+    def _look(self) -> list[tuple[Key, float]]:
+        """Return what keys are still to be charged for studies that have ended (s)."""
         unfinished = self.store.unfinished()
         self._metrics.studies.set(len(unfinished))
         self._metrics.members_missing.set(sum(study.count - study.done for study in unfinished))
@@ -97,6 +106,14 @@ class Supervisor:
         accepted = [study for study in unfinished if study.status == ACCEPTED]
         if accepted and self._settings.dask:
             self._require_scheduler(accepted)
+        ended = [*self._charged.keys() - {study.id for study in unfinished}]
+        return [charge for identity in ended for charge in self._rest_of(identity)]
+
+    def _rest_of(self, identity: str) -> Iterator[tuple[Key, float]]:
+        key, charged = self._charged.pop(identity)
+        study = self.store.get(identity)
+        if study is not None:
+            yield key, study.seconds - charged
 
     def _require_scheduler(self, accepted: list[Study]) -> None:
         """Say of studies that nothing works on yet if their scheduler cannot be reached.

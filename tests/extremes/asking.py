@@ -51,7 +51,7 @@ class Reply:
 
 
 def ask(path: str, question: Asked, attempt: int = 0) -> Reply:
-    """Read, price, answer and write a question, as the service does; nothing but a refusal may come in between.
+    """Read, answer and write a question, as the service does; nothing but a refusal may come in between.
 
     Parameters
     ----------
@@ -61,7 +61,6 @@ def ask(path: str, question: Asked, attempt: int = 0) -> Reply:
     route = ROUTES[path]
     try:
         read = ANSWERING.read(route, json.dumps(question).encode())
-        assert ANSWERING.price(route, read) >= 0.0
         answer = ANSWERING.answer(route, read, attempt)
     except Refusal as refusal:
         return Reply(None, refusal.problem)

@@ -1,15 +1,14 @@
-"""Integrators at the extremes: what is said of their error is never below it, and prices are numbers."""
+"""Integrators at the extremes: what is said of their error is never below it, and plans have numbers."""
 
 from __future__ import annotations
 
-import json
 import math
 from fractions import Fraction
 from typing import Any
 
 import pytest
 
-from tests.extremes.asking import ANSWERING, BUDGET, ROUTES, ask, certified
+from tests.extremes.asking import ask, certified
 from tests.extremes.questions import LARGEST, MATRIX_OF_METHODS, MOTIONS, turn_of
 from tests.extremes.test_rotation import OWN, TRAJECTORY, farthest
 
@@ -80,14 +79,10 @@ def test_the_error_of_a_run_that_nothing_can_judge_is_relative_to_what_is_certai
         ([LARGEST, LARGEST, 0.0], [0.0, LARGEST], {"kind": "runge-kutta-4", "step": 5e-324}),
     ],
 )
-def test_whatever_the_request_has_a_price_and_a_plan(rates: Any, times: Any, method: Any) -> None:
-    """A price that is no number would be added to the backlog and to the quota of a key, which then are none either."""
+def test_whatever_the_request_has_a_plan(rates: Any, times: Any, method: Any) -> None:
     motion = {"body": BODY, "angular_velocity": rates, "times": times}
     for path, asked in (
         (TRAJECTORY, motion | {"method": method}),
         ("/v1/work-precision", motion | {"methods": [method]}),
     ):
-        route = ROUTES[path]
-        price = route.price(ANSWERING.read(route, json.dumps(asked).encode()), BUDGET)
-        assert 0.0 <= price < math.inf
         ask("/v1/plan", {"path": path, "request": asked}).of()

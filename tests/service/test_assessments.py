@@ -648,20 +648,6 @@ async def test_methods_are_looked_for_in_a_limited_number_of_samples() -> None:
     assert [warning["code"] for warning in many["warnings"]] == ["methods-not-looked-for"]
 
 
-async def test_samples_at_times_of_their_own_cost_a_question_each() -> None:
-    route = ROUTES[PATH]
-
-    def price(count: int, shift: float) -> float:
-        claims = [
-            {"/angular_velocity": {"times": [shift * i, 1.0], "value": [[0.0] * 3] * 2, "unit": "rad/s"}}
-            for i in range(count)
-        ]
-        body = json.dumps({"question": MOTION, "submissions": claims}).encode()
-        return float(route.price(HANDLER.read(route, body), Budget()))
-
-    assert price(200, 0.1) > 3 * price(2, 0.1)
-
-
 async def test_a_measurement_is_run_once() -> None:
     measure = {"method": {"kind": "closed-form"}, "duration": 15.0, "samples": 2000, "tolerance": 0.035}
     measured = {**COIN, "request": {**COIN["request"], "measure": measure}}

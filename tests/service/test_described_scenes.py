@@ -555,53 +555,10 @@ class TestCatalogue:
             assert example == json.loads((EXAMPLES / f"{name}.json").read_text())
 
 
-class TestPrice:
-    def price(self, question: Any) -> float:
-        return ROUTE.price(Reader(ROUTE.question, Limits()).read(json.dumps(question).encode()), Budget())
-
-    def test_more_bodies_connections_times_and_searches_cost_more(self) -> None:
-        double = PENDULUM | {
-            "bodies": {"p": POINT, "q": {"mass": 1, "at": [6, -8]}},
-            "connections": [ROD, {"kind": "rod", "a": "p", "b": "q"}],
-        }
-        few, later, often = ({"times": {"start": 0, "stop": t, "count": n}} for t, n in ((1, 2), (9, 2), (1, 9000)))
-        known = [PENDULUM, PENDULUM | few, double | few, double | later]
-        prices = [self.price(question) for question in known]
-        assert prices == sorted(set(prices))
-        assert self.price(PENDULUM | often) > self.price(PENDULUM | few)
-        assert self.price(PENDULUM | {"outputs": ["equilibria"]}) > 5 * self.price(PENDULUM)
-
-    def test_a_row_on_springs_is_priced_by_its_modes(self) -> None:
-        def row(count: int, slope: int = 0, *more: dict[str, Any]) -> dict[str, Any]:
-            bodies = {f"p{i}": {"mass": 1, "at": [i + 1, slope * i]} for i in range(count)}
-            springs = [
-                {"kind": "spring", "a": name, "b": end, "stiffness": 1, "rest_length": 1}
-                for name, end in zip(bodies, [[0, 0], *bodies], strict=False)
-            ]
-            return {"bodies": bodies, "connections": [*springs, *more]}
-
-        damper = {"kind": "damper", "a": "p0", "b": [0, 0], "coefficient": 1}
-        late = {"times": [1e6]}
-        assert self.price(row(20) | late) == self.price(row(20) | {"times": [1]})
-        assert self.price(row(20, 1) | late) > 10 * self.price(row(20) | late)
-        assert self.price(row(100, 0, damper)) > 5 * self.price(row(100)) > 100 * self.price(row(10))
-
-    def test_no_time_is_priced_beyond_the_steps_that_core_takes(self) -> None:
-        apart = {"bodies": {"p": POINT, "q": POINT}, "connections": [ROD]}
-        assert self.price(apart | {"times": [1e9]}) == self.price(apart | {"times": [1e300]})
-
-    def test_methods_and_uncertain_numbers_cost_more(self) -> None:
-        moved = PENDULUM | {"times": [1.0]}
-        by = [moved | {"method": {"kind": "explicit-euler", "step": step}} for step in (1e-2, 1e-4)]
-        assert self.price(moved) < self.price(by[0]) < self.price(by[1])
-        # Gravity, the mass and two coordinates: four motions beside the one.
-        assert self.price(moved | {"input_uncertainty": 1e-9}) == pytest.approx(5 * self.price(moved), rel=0.01)
-
+class TestPlan:
     def test_it_always_runs_in_a_compute_process(self) -> None:
         assert ROUTE.small is PostRoute.small
 
-
-class TestPlan:
     async def test_searches_that_are_too_long_are_foreseen_to_be_refused(self) -> None:
         bodies = {f"p{i}": POINT | {"at": [i, 0]} for i in range(100)}
         request = {"bodies": bodies, "outputs": ["equilibria"]}

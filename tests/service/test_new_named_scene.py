@@ -11,7 +11,6 @@ import numpy as np
 import orjson
 import pytest
 
-from core.systems.budget import Budget
 from service.app import Service
 from service.routing import PostRoute
 from service.settings import Settings
@@ -115,16 +114,6 @@ async def test_the_document_shows_its_own_model(service: Service) -> None:
     assert {"period", "energy", "trajectory"} <= set(schemas["BlockOnSpringAnswer"]["properties"])
     assert PATH in document["paths"]
     assert CERTIFIED in document["paths"]
-
-
-def test_what_is_not_measured_is_priced_as_the_costliest_that_is() -> None:
-    route = ROUTES[PATH]
-    question = read(route, QUESTION)
-    others = [r for path, r in ROUTES.items() if path.startswith("/v1/scenes/") and path != PATH]
-    for other in others:
-        example = next(one.question for one in other.examples.values() if "times" in one.question)
-        same = read(other, {**example, "times": QUESTION["times"]})
-        assert route.price(question, Budget()) >= other.price(same, Budget())
 
 
 def read(route: PostRoute, question: dict[str, Any]) -> Any:

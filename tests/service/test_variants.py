@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.assessment.propagation import numbers_of
-from core.errors import InvalidParameter, pointer_of
+from core.errors import pointer_of
 from core.systems.budget import Budget
 from service.execution.request_handler import RequestHandler
 from service.problems import Refusal
@@ -228,21 +228,3 @@ async def test_numbers_that_json_does_not_have_are_refused(text: str) -> None:
         response = await client.post(PATH, content=body, headers=JSON)
     assert response.status_code in (400, 422)
     assert response.json()["code"] in ("invalid-json", "invalid-parameter")
-
-
-def test_it_is_priced_by_its_question_and_its_count() -> None:
-    route = ROUTES[PATH]
-
-    def price(count: int, **more: Any) -> float:
-        body = json.dumps({"question": COIN, "vary": ALIKE, "seed": 0, "count": count, **more}).encode()
-        return HANDLER.price(route, HANDLER.read(route, body))
-
-    assert price(100) > 50.0 * price(1) > 0.0
-    assert price(100, max_condition=10.0) > price(100)
-    with pytest.raises((Refusal, InvalidParameter)):
-        HANDLER.price(
-            route,
-            HANDLER.read(
-                route, b'{"question": {"path": "/x", "request": {}}, "vary": {"/a": {"min": 0, "max": 1}}, "seed": 0}'
-            ),
-        )

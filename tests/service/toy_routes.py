@@ -15,7 +15,7 @@ from core.notices import Notice
 from core.quantities import AngularVelocity, Mass, Position, Quantity, TaggedBy, check
 from core.systems.budget import Budget
 from service.routing import Example, PostRoute
-from service.schemas import Envelope, Request, Times, Vector, sample_count, sample_times
+from service.schemas import Envelope, Request, Times, Vector, sample_times
 
 PositiveMoment = Annotated[float, Quantity("kg m^2", above=0)]
 
@@ -71,6 +71,7 @@ class Told(Envelope):
 
 
 def handle(question: Ask, budget: Budget) -> dict[str, Any]:
+    t = sample_times(question.times, budget)
     behaviour = question.behaviour
     if behaviour == "fail":
         raise RuntimeError("secret of the service")
@@ -84,17 +85,11 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
         np.ones(int(question.angular_velocity[0]), np.uint8)
     if behaviour == "die":
         os.kill(os.getpid(), signal.SIGKILL)
-    t = sample_times(question.times, budget)
     position = np.stack([t * w for w in question.angular_velocity]).T
     if behaviour == "nan":
         position[-1, -1] = np.nan
     warnings = (Notice("toy", "this is a toy", ("body", "moments", 0)),) if behaviour == "warn" else ()
     return {"time": t, "position": position, "nothing": None, "warnings": warnings}
-
-
-def price(question: Ask, budget: Budget) -> float:
-    samples = sample_count(question.times, budget)
-    return 1e-8 * samples
 
 
 def is_small(question: Ask) -> bool:
@@ -116,7 +111,6 @@ TOY = PostRoute(
     Ask,
     Told,
     handle,
-    price,
     is_small,
     examples={"small": Example("three samples", GOOD)},
 )

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import Field
 
 from core.assessment.answer_key import Document, key_of
@@ -16,11 +14,10 @@ from core.assessment.catalogue import MISTAKES
 from core.assessment.claims import MOST_CLAIMS, Claim
 from core.assessment.comparisons import Comparison
 from core.assessment.feedback.languages import Language
-from core.assessment.figures import DESCRIBED, is_null, steps_of, value_at
-from core.assessment.formula_variations import VARIATIONS
+from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.graded_question import GradedQuestion
-from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
-from core.assessment.propagation import MOST_CHANGED_NUMBERS, numbers_of, relative_uncertainties
+from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, Grader, credited
+from core.assessment.propagation import numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
 from core.assessment.terms import Terms
 from core.assessment.typed_entry import Locale
@@ -31,7 +28,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.requests.request_reader import Limits, Reader
-from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, EndpointRequest, QuestionTable
+from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable
 from service.routes.assessments.submissions import SubmissionList
 from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
@@ -40,21 +37,6 @@ from service.schemas import Request
 FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
 
-SECONDS_OF_A_CLAIM, SECONDS_OF_SAMPLES = 2.5e-5, 1e-3
-
-SECONDS_OF_A_FORMULA = 5e-4
-"""For reading it and evaluating it at every variation."""
-
-SECONDS_OF_A_SEARCH, SECONDS_OF_SOLVERS = 5e-3, 0.15
-"""For the method that wrong samples come from, and for solvers that choose their steps at times of their own."""
-
-SECONDS_OF_A_COLUMN = 2e-2
-"""For the mistakes at some times."""
-
-CHANGED_BY_MISTAKES = 10
-"""Changed questions that the mistakes of a figure are computed from, about."""
-
-_WORD = re.compile(r"[A-Za-z_]\w*")
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
@@ -153,9 +135,6 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         warnings = warnings if question.reveal else []
         return {"results": results, **shown, "warnings": [*warnings, *_left_out(question, grader)]}
 
-    def price(question: AssessmentRequest, budget: Budget) -> float:
-        return _seconds(question, table.price(question.question, budget))
-
     def small(question: AssessmentRequest) -> bool:
         if len(question.submissions) > FEW_SUBMISSIONS:
             return False
@@ -172,7 +151,6 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         AssessmentRequest,
         AssessmentAnswer,
         assess,
-        price,
         small,
         description=DESCRIPTION,
         warming=(WRONG_SAMPLES,),
@@ -194,33 +172,6 @@ def _left_out(question: AssessmentRequest, grader: Grader) -> list[Notice]:
         detail += f"the question has no such figure, or is about another arrangement; {remedy}"
         found.append(Notice("formulas-not-judged", detail, ("names",)))
     return found
-
-
-def _seconds(question: AssessmentRequest, once: float) -> float:
-    """Return the predicted time of an assessment of a question that is answered in `once` (s)."""
-    inputs = sum(1 for _ in numbers_of(question.question.request))
-    again = (
-        1 + min(inputs, MOST_CHANGED_NUMBERS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
-    )
-    # Whether a text is a formula is known when it has been read.
-    formulas = [claim[key] for key in ("formula", "text") for claim in _claims_with(key, question.submissions)]
-    # Without names, what varies of a described scene is what a formula has.
-    named = question.names is not None or question.question.path != f"/v1/{DESCRIBED}"
-    words = {"" if named else " ".join(sorted({*_WORD.findall(str(one))})) for one in formulas}
-    again += VARIATIONS * len(words)
-    # What is right is judged in a hundredth of the time; before it is judged nobody knows.
-    timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
-    columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
-    samples = SECONDS_OF_SAMPLES * len(timed) + SECONDS_OF_A_SEARCH * min(len(timed), MOST_IDENTIFIED)
-    samples += SECONDS_OF_SOLVERS * min(columns, MOST_SOLVED) + SECONDS_OF_A_COLUMN * columns
-    claims = sum(len(one) for one in question.submissions if isinstance(one, dict))
-    return (
-        SECONDS_OF_PROOF
-        + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
-        + samples
-        + SECONDS_OF_A_FORMULA * len(formulas)
-        + SECONDS_OF_A_CLAIM * claims
-    )
 
 
 def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body: bytes) -> Document:

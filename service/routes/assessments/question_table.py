@@ -23,9 +23,6 @@ from service.schemas import Request
 
 WITHIN: Path = ("question", "request")
 
-SECONDS_OF_PROOF = 1e-3
-"""For proven digits."""
-
 
 class EndpointRequest(Request):
     """A request to another endpoint, whose answer is the reference."""
@@ -77,11 +74,12 @@ class QuestionTable:
             graded.answer  # noqa: B018
         return graded
 
-    def price(self, question: EndpointRequest, budget: Budget) -> float:
-        """Return the predicted time of one answer (s), or refuse the question."""
+    def readable(self, question: EndpointRequest) -> PostRoute:
+        """Return the route of a question, or refuse one that cannot be read."""
         route = self.route(question)
         with within_question():
-            return route.price(self._read(route, question.request), budget)
+            self._read(route, question.request)
+        return route
 
     def small(self, question: EndpointRequest) -> bool:
         """Return whether the question, or the problem that answers it, may be begun in the event loop."""

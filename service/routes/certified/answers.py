@@ -11,12 +11,13 @@ from typing import Any, Literal
 from pydantic import Field
 
 from core.bodies.exact_mass import ExactMass
+from core.digits.adaptive_precision import check_digits
 from core.digits.decimals import decimal_of_fraction
 from core.notices import Notice
 from core.systems.budget import Budget
 from service.requests.decimal_models import inexact_doubles
 from service.routing import Answer, PostRoute
-from service.schemas import DecimalString, Envelope, Ratio, View
+from service.schemas import DecimalString, Envelope, Ratio, View, sample_count
 
 ROOT = "/v1/certified"
 
@@ -45,6 +46,13 @@ class Certified(Envelope):
     """What every certified answer carries."""
 
     accuracy: CertifiedAccuracy
+
+
+def samples_of(times: Any, digits: int, numbers: int, budget: Budget) -> int:
+    """Return the number of samples, of so many numbers each, or raise `BudgetExceeded`."""
+    samples = sample_count(times, budget)
+    check_digits(digits, numbers * samples)
+    return samples
 
 
 Handler = Callable[[Any, Budget], Answer]

@@ -7,28 +7,20 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from core.digits.adaptive_precision import check_digits
-from core.digits.exact_inputs import nearest
 from core.multibody.proven.proven_answer import PROVEN_OUTPUTS, proven_answer
 from core.systems.budget import Budget
-from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants
+from service.requests.decimal_models import DecimalTimes, DigitCount, instants
 from service.requests.described_scene import SceneDescription
 from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
-from service.routes.certified.cost import SET_UP
 from service.routes.described_answer import AtStart, OwnUnit
-from service.routes.described_scenes import DESCRIBED_SCENES, in_space, model_fields, turning_bodies
+from service.routes.described_scenes import DESCRIBED_SCENES, model_fields
 from service.routes.motion_figures import draw_described
 from service.routing import Answer
 from service.schemas import DecimalString, Seconds, View, fields_of, sample_count
 
 NUMBERS_OF_A_BODY = 8
 """Numbers in a sample of a body, about."""
-PER_SECOND = 0.7
-"""Time to prove a second of the motion of a pendulum to 28 digits (s)."""
-TURNING_IN_SPACE = 3
-"""As how many more bodies one counts that turns in space, as measured on tops and thrown bodies."""
-LONGEST = 20.0
-"""Time after which the steps that core allows are used up, about (s)."""
 
 Output = Literal["accelerations", "forces", "energy", "trajectory"]
 
@@ -112,19 +104,6 @@ def _samples(question: CertifiedSceneRequest, budget: Budget) -> int:
     return samples
 
 
-def certified_scene_cost(question: CertifiedSceneRequest, budget: Budget) -> float:
-    """Return the predicted time (s); that of a motion is an upper one, as few have a closed form."""
-    samples, bodies = _samples(question, budget), float(max(1, len(question.bodies)))
-    set_up = SET_UP + 2e-3 * (bodies + len(question.connections))
-    if question.times is None:
-        return set_up
-    first, last = (nearest(time) for time in ends(question.times))
-    seconds = min(LONGEST, max(0.0, last) - min(0.0, first))
-    weight = bodies + TURNING_IN_SPACE * turning_bodies(question) * in_space(question)
-    moving = float(PER_SECOND * seconds * weight**2.5 * (question.digits / 28.0) ** 1.5)
-    return set_up + min(LONGEST, moving) + 1e-4 * samples * bodies
-
-
 CERTIFIED_DESCRIBED = certified_route(
     DESCRIBED_SCENES[0],
     question=CertifiedSceneRequest,
@@ -132,6 +111,5 @@ CERTIFIED_DESCRIBED = certified_route(
     handle=answer_certified_scene,
     description="Numbers of the description are the decimals that are written, unless `numbers` says otherwise; JSON "
     "numbers among the times are doubles, and decimal strings mean what they say.",
-    price=certified_scene_cost,
     representations={SVG: draw_described},
 )

@@ -21,8 +21,7 @@ from service.requests.decimal_models import (
     instants,
 )
 from service.responses.svg import SVG
-from service.routes.certified.answers import Certified, accuracy, certified_route, notices, times_written
-from service.routes.certified.cost import SET_UP, PerSample, affordable, summing
+from service.routes.certified.answers import Certified, accuracy, certified_route, notices, samples_of, times_written
 from service.routes.motion_figures import draw_rotation
 from service.routes.rotation.precession import DISTURBANCE, PRECESSION, RATE, Equilibria, PrecessionFigures
 from service.routes.rotation.trajectory import (
@@ -35,11 +34,6 @@ from service.routes.rotation.trajectory import (
 )
 from service.routing import Answer
 from service.schemas import DecimalString, Request, fields_of
-
-RATES = PerSample(2e-5, 6e-8, 1.7e-10)
-RATES_AND_ATTITUDES = PerSample(5e-5, 1.2e-7, 8.5e-10)
-FIGURES = PerSample(4e-4, 1e-6, 4e-9)
-EQUILIBRIA = PerSample(1.5e-4, 3e-7, 5e-10)
 
 
 class CertifiedTrajectoryRequest(Request):
@@ -88,7 +82,7 @@ class CertifiedStabilityAnswer(Certified, Equilibria[DecimalString]):
 def answer_trajectory(question: CertifiedTrajectoryRequest, budget: Budget) -> Answer:
     """Answer with samples of the motion."""
     digits, wanted = question.digits, wanted_outputs(question.outputs, question.attitude)
-    samples = affordable(question.times, digits, _numbers(wanted), budget)
+    samples = samples_of(question.times, digits, _numbers(wanted), budget)
     times = instants(question.times)
     body = body_of(question.body)
     motion = CertifiedRotation.of(body.of_motion, question.angular_velocity)
@@ -141,31 +135,12 @@ def _numbers(wanted: tuple[Output, ...]) -> int:
     return 7 if "attitude" in wanted else 3
 
 
-def trajectory_cost(question: CertifiedTrajectoryRequest, budget: Budget) -> float:
-    """Return the predicted time of a trajectory (s)."""
-    wanted, digits = wanted_outputs(question.outputs, question.attitude), question.digits
-    samples = affordable(question.times, digits, _numbers(wanted), budget)
-    each = (RATES_AND_ATTITUDES if "attitude" in wanted else RATES).seconds(digits)
-    return SET_UP + summing(question.body) + samples * each
-
-
-def precession_cost(question: CertifiedPrecessionRequest, budget: Budget) -> float:
-    """Return the same of a question without times: a handful of figures that cost a few samples each."""
-    return SET_UP + summing(question.body) + FIGURES.seconds(question.digits)
-
-
-def stability_cost(question: CertifiedStabilityRequest, budget: Budget) -> float:
-    """Return the same of the equilibria."""
-    return SET_UP + summing(question.body) + EQUILIBRIA.seconds(question.digits)
-
-
 CERTIFIED_ROTATION = (
     certified_route(
         ROTATION[0],
         question=CertifiedTrajectoryRequest,
         answer=CertifiedTrajectoryAnswer,
         handle=answer_trajectory,
-        price=trajectory_cost,
         representations={SVG: draw_rotation},
     ),
     certified_route(
@@ -173,13 +148,11 @@ CERTIFIED_ROTATION = (
         question=CertifiedPrecessionRequest,
         answer=CertifiedPrecessionAnswer,
         handle=answer_precession,
-        price=precession_cost,
     ),
     certified_route(
         PRECESSION[1],
         question=CertifiedStabilityRequest,
         answer=CertifiedStabilityAnswer,
         handle=answer_stability,
-        price=stability_cost,
     ),
 )

@@ -19,8 +19,7 @@ from service.requests.decimal_models import (
     instants,
 )
 from service.responses.svg import SVG
-from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
-from service.routes.certified.cost import SET_UP, PerSample, affordable
+from service.routes.certified.answers import Certified, accuracy, certified_route, samples_of, times_written
 from service.routes.motion_figures import scene_drawing
 from service.routes.scenes import (
     TIMES,
@@ -39,8 +38,6 @@ COLUMNS = 8
 QUESTION = ("times", "outputs", "digits")
 """Fields of a question that are not the scene's own."""
 
-SAMPLES = {"elementary": PerSample(1.1e-5, 3e-8, 1e-10), "elliptic": PerSample(4.5e-5, 1.5e-7, 1.5e-9)}
-"""By the functions that the motion of a scene is made of."""
 
 SHOWN_DIGITS = 50
 """Digits of the examples."""
@@ -71,7 +68,7 @@ def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:
 
 
 def _samples(question: Any, budget: Budget) -> int:
-    return 0 if question.times is None else affordable(question.times, question.digits, COLUMNS, budget)
+    return 0 if question.times is None else samples_of(question.times, question.digits, COLUMNS, budget)
 
 
 class CertifiedSceneAnswer(Certified, SceneAnswer[DecimalString]):
@@ -85,11 +82,7 @@ def certified_scenes(scenes: tuple[type[NamedScene], ...]) -> tuple[PostRoute, .
 
 
 def _route(ordinary: PostRoute, scene: type[NamedScene]) -> PostRoute:
-    each = SAMPLES[scene.functions]
     *_, shown = scene.examples.values()
-
-    def cost(question: Any, budget: Budget) -> float:
-        return SET_UP + _samples(question, budget) * each.seconds(question.digits)
 
     own = fields_in_numerals(scene) | {"times": (DecimalTimes | None, TIMES), "digits": (DigitCount, ...)}
     answer = answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString)
@@ -98,7 +91,6 @@ def _route(ordinary: PostRoute, scene: type[NamedScene]) -> PostRoute:
         question=request_model(scene, "Certified", **own),
         answer=answer,
         handle=answering(scene),
-        price=cost,
         examples={
             "digits": Example(f"{SHOWN_DIGITS} proven digits", in_decimals(shown.question) | {"digits": SHOWN_DIGITS})
         },

@@ -14,7 +14,6 @@ from service.requests.decimal_models import DecimalAngularVelocity, DecimalBody,
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices
-from service.routes.certified.cost import SET_UP, PerSample, summing
 from service.routes.rotation.surfaces import (
     ENERGY,
     POINTS,
@@ -24,8 +23,8 @@ from service.routes.rotation.surfaces import (
     Count,
     Drawn,
     EllipsoidSurface,
-    curve_points,
     curves_drawn,
+    require_few_points,
 )
 from service.routing import Answer
 from service.schemas import DecimalString, Request, fields_of, require_one
@@ -62,7 +61,7 @@ class CertifiedEllipsoidAnswer(Certified, EllipsoidSurface[DecimalString]):
 def energy_ellipsoid(question: CertifiedEllipsoidRequest, budget: Budget) -> Answer:
     """Answer with the semi-axes, and with the requested surface and curves."""
     body, digits = body_of(question.body), question.digits
-    curve_points(question, budget)
+    require_few_points(question, budget)
     check_digits(digits, _numbers(question))
     require_one(question, "energy", "angular_velocity")
     if question.energy is not None:
@@ -110,40 +109,10 @@ def _numbers(question: CertifiedEllipsoidRequest) -> int:
     return 3 * (_vertices(question) + curves_drawn(question) * question.points)
 
 
-POINT = PerSample(7e-6, 2e-8, 6e-11)
-CURVE = PerSample(3e-4, 5e-7, 8e-10)
-VERTEX = PerSample(5e-6, 1e-8, 6e-11)
-FACE = PerSample(2e-5, 2.5e-8, 1.5e-10)
-
-
-def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> float:
-    """Return the predicted time (s), by points of curves, vertices, and triangles, of which angles are measured.
-
-    Raises
-    ------
-    BudgetExceeded
-        For more points or digits than one answer may have.
-    """
-    digits, curves = question.digits, curves_drawn(question)
-    points = curve_points(question, budget)
-    check_digits(digits, _numbers(question))
-    layout, resolution = _surface(question)
-    faces = 20 * resolution**2 if layout == "triangles" else 0
-    return (
-        SET_UP
-        + summing(question.body)
-        + curves * CURVE.seconds(digits)
-        + points * POINT.seconds(digits)
-        + _vertices(question) * VERTEX.seconds(digits)
-        + faces * FACE.seconds(digits)
-    )
-
-
 CERTIFIED_ELLIPSOID = certified_route(
     SURFACES[0],
     question=CertifiedEllipsoidRequest,
     answer=CertifiedEllipsoidAnswer,
     handle=energy_ellipsoid,
-    price=ellipsoid_cost,
     representations={SVG: ellipsoid_figure},
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Annotated, Any
 
 import numpy as np
@@ -19,9 +18,8 @@ from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, effort, in_closed_form, judged, numbers, speed_of
 from service.responses.svg import SVG
-from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
+from service.routes.bodies import few_times, is_small, properties_of
 from service.routes.motion_figures import draw_ensemble
 from service.routes.rotation.surfaces import Count, Seed
 from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy, accuracy_fields
@@ -36,8 +34,8 @@ from service.schemas import (
     Seconds,
     Times,
     View,
+    in_closed_form,
     require_one,
-    sample_count,
     sample_times,
 )
 
@@ -132,32 +130,8 @@ def _starts(question: EnsembleRequest, body: Any) -> Any:
     return np.array(question.angular_velocities)
 
 
-def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of an ensemble."""
-    members, samples = _members(question), sample_count(question.times, budget)
-    return {
-        **counts(question, budget),
-        "members": members,
-        "samples": samples * members,
-        "times": samples,
-        **effort(question.method, question.times, _speed(question), samples, members),
-        **judged(question.method, question.times, _speed(question), budget, members),
-        **numbers(3 * samples * members, question.round),
-    }
-
-
 def _members(question: EnsembleRequest) -> int:
     return question.sample.count if question.sample is not None else len(question.angular_velocities or ())
-
-
-def _speed(question: EnsembleRequest) -> float:
-    """Return the speed that methods follow; of a sample's starts it is known how fast they are on average."""
-    moments = moments_to_foresee((question.method,), question.body)
-    speed = max((speed_of(start) for start in question.angular_velocities or ()), default=1.0)
-    if question.sample is not None and moments and moments[0] > 0.0:
-        # The root of the mean square over the directions of the sample.
-        speed = speed_of([sqrt(question.sample.energy / 1.5) / sqrt(moment) for moment in moments])
-    return speed_to_follow((question.method,), question.body, speed)
 
 
 def is_small_ensemble(question: EnsembleRequest) -> bool:
@@ -175,7 +149,6 @@ ENSEMBLE = (
         EnsembleRequest,
         EnsembleAnswer,
         answer_ensemble,
-        CalibratedCost("rotation_ensemble", ensemble_counts),
         is_small_ensemble,
         representations={SVG: draw_ensemble},
     ),

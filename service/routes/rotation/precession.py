@@ -15,8 +15,7 @@ from core.rotation.precession.precession import Precession, Regime, precession
 from core.rotation.stability.stability import stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
-from service.execution.cost_model import CalibratedCost, effort, judged, speed_of
-from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
+from service.routes.bodies import is_small, properties_of
 from service.routes.rotation.many_precessions import many_precessions
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
 from service.routing import Answer, PostRoute
@@ -29,7 +28,6 @@ from service.schemas import (
     Ratio,
     Request,
     Seconds,
-    Span,
     UnitVector,
     View,
 )
@@ -179,18 +177,6 @@ def answer_stability(question: StabilityRequest, budget: Budget) -> Answer:
     return found._asdict() | {"equilibria": listed}
 
 
-def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a question about rates."""
-    measure, found = question.measure, counts(question, budget)
-    if measure is None:
-        return found
-    # More samples are refused.
-    times = Span(start=0.0, stop=measure.duration, count=min(measure.samples, budget.samples))
-    speed = speed_to_follow((measure.method,), question.body, speed_of(question.angular_velocity))
-    found |= effort(measure.method, times, speed, measure.samples)
-    return found | judged(measure.method, times, speed, budget)
-
-
 PRECESSION = (
     PostRoute(
         "/v1/rotation/precession",
@@ -200,7 +186,6 @@ PRECESSION = (
         PrecessionRequest,
         PrecessionAnswer,
         answer_precession,
-        CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
         many=many_precessions,
     ),
@@ -212,7 +197,6 @@ PRECESSION = (
         StabilityRequest,
         StabilityAnswer,
         answer_stability,
-        CalibratedCost("stability", counts),
         is_small,
     ),
 )

@@ -17,10 +17,9 @@ from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.surfaces.polhodes import polhode, separatrix
 from core.rotation.torque_free import inherited_notices
 from core.systems.budget import Budget
-from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
-from service.routes.bodies import FEW_SAMPLES, counts, is_small, properties_of
+from service.routes.bodies import FEW_SAMPLES, is_small, properties_of
 from service.routing import Answer, PostRoute
 from service.schemas import (
     AngularMomentumMagnitude,
@@ -39,7 +38,6 @@ from service.schemas import (
 )
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
-FINEST_PRICED = 1000
 COARSE, FEW_POINTS = 6, 512
 """Resolution and points of curves up to which a surface may be begun in the event loop."""
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
@@ -145,6 +143,7 @@ class StatesAnswer(Envelope):
 
 def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
     """Answer with the surface and the curves on it."""
+    require_few_points(question, budget)
     body = properties_of(question.body)
     surface = _surface(question, body)
     answer: Answer = {
@@ -184,26 +183,13 @@ def curves_drawn(question: Any) -> int:
     return int((drawn or (question.angular_velocity is not None)) + 2 * question.separatrix)
 
 
-def curve_points(question: Any, budget: Budget) -> int:
-    """Return how many points the curves of a question have, or refuse more than one answer may have."""
+def require_few_points(question: Any, budget: Budget) -> None:
+    """Refuse more points on the curves of a question than one answer may have."""
     points: int = curves_drawn(question) * question.points
     if points > budget.samples:
         path = ("polhodes", "count") if question.polhodes is not None else ("points",)
         remedy = "ask for fewer curves, or for fewer points on each"
         raise BudgetExceeded("points", points, budget.samples, path=path, remedy=remedy)
-    return points
-
-
-def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a surface, or refuse more points than one answer may have."""
-    # Finer surfaces are refused, at no cost.
-    squares = min(question.resolution, FINEST_PRICED) ** 2
-    return {
-        **counts(question, budget),
-        "curves": curves_drawn(question),
-        "curve points": curve_points(question, budget),
-        f"squares of {question.layout}": squares,
-    }
 
 
 def is_small_ellipsoid(question: EllipsoidRequest) -> bool:
@@ -223,11 +209,6 @@ def states(question: StatesRequest, budget: Budget) -> Answer:
     }
 
 
-def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of starts to be drawn."""
-    return counts(question, budget) | {"numbers": 3 * question.count}
-
-
 SURFACES = (
     PostRoute(
         "/v1/rotation/energy-ellipsoid",
@@ -237,7 +218,6 @@ SURFACES = (
         EllipsoidRequest,
         EllipsoidAnswer,
         energy_ellipsoid,
-        CalibratedCost("energy_ellipsoid", ellipsoid_counts),
         is_small_ellipsoid,
         description="`Accept: image/svg+xml` returns the same as a figure, without the mesh.",
         representations={SVG: ellipsoid_figure},
@@ -250,7 +230,6 @@ SURFACES = (
         StatesRequest,
         StatesAnswer,
         states,
-        CalibratedCost("initial_states", states_counts),
         lambda question: question.count <= FEW_SAMPLES and is_small(question),
     ),
 )

@@ -14,9 +14,8 @@ from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Accuracy as StatedAccuracy
 from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, effort, in_closed_form, judged, numbers, speed_of
 from service.responses.svg import SVG
-from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
+from service.routes.bodies import few_times, is_small, properties_of
 from service.routes.motion_figures import draw_rotation
 from service.routing import Answer, PostRoute
 from service.schemas import (
@@ -36,7 +35,7 @@ from service.schemas import (
     Times,
     View,
     fields_of,
-    sample_count,
+    in_closed_form,
     sample_times,
 )
 
@@ -210,22 +209,6 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     }
 
 
-def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a trajectory."""
-    samples, wanted = sample_count(question.times, budget), wanted_outputs(question.outputs, question.attitude)
-    found = counts(question, budget) | {"samples": samples}
-    if "attitude" in wanted:
-        found |= {"attitudes": 1.0, "attitude samples": samples}
-    found |= effort(question.method, question.times, _speed(question), samples)
-    found |= judged(question.method, question.times, _speed(question), budget)
-    columns = 3 * ("angular_velocity" in wanted) + 4 * ("attitude" in wanted)
-    return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
-
-
-def _speed(question: TrajectoryRequest) -> float:
-    return speed_to_follow((question.method,), question.body, speed_of(question.angular_velocity))
-
-
 def is_small_trajectory(question: TrajectoryRequest) -> bool:
     """Return whether a trajectory has few samples, in closed form."""
     return in_closed_form(question.method) and few_times(question.times) and is_small(question)
@@ -253,7 +236,6 @@ ROTATION = (
         TrajectoryRequest,
         TrajectoryAnswer,
         trajectory,
-        CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
         warming=(RESTING, STEADY, NEARLY_SYMMETRIC),
         representations={SVG: draw_rotation},

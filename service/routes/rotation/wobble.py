@@ -20,7 +20,6 @@ from core.rotation.wobble import (
     rotations_of_period,
 )
 from core.systems.budget import Budget
-from service.execution.cost_model import CalibratedCost, one
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, fields_of, require_one
 
@@ -78,7 +77,6 @@ WOBBLE = (
         WobbleRequest,
         WobbleAnswer,
         wobble,
-        CalibratedCost("wobble", one),
         lambda question: True,
         errors=errors,
     ),

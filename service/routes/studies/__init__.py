@@ -1,25 +1,24 @@
-"""The request of a study, and what a study will be: its members, figures and price."""
+"""The request of a study, and what a study will be: its members and figures."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from time import thread_time
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import Field
 
 from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.propagation import at
 from core.assessment.varied_input import LONGEST_WORD
-from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, Path
+from core.errors import BudgetExceeded, InvalidParameter, Path
 from core.formulas import Formula
 from core.quantities import Quantity
 from core.studies.designs import Design, Kind
 from core.studies.statistics import BINS, PROBABILITIES, STATISTICS, Statistic
 from core.studies.study_input import StudyInput
 from core.systems.budget import Budget
-from service.problems import Refusal
 from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, within_question
 from service.routes.declared_units import unit_at
 from service.routes.studies.members import Members, number_of
@@ -33,12 +32,6 @@ MOST_VARIED = 20
 MOST_QUANTITIES = 20
 
 MOST_BINS = 1000
-
-PRICED = 32
-"""Members by which all of them are priced."""
-
-SECONDS_OF_A_MEMBER = 3e-4
-"""Beside its price: reading it and finding its figures."""
 
 SECONDS_AMONG_MANY = 8e-6
 """Of a member that is answered together with many others."""
@@ -105,10 +98,9 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     def plan(question: StudyRequest, budget: Budget) -> Answer:
         return _answerable(question, table, budget)
 
-    def price(question: StudyRequest, budget: Budget) -> float:
+    def require(question: StudyRequest, budget: Budget) -> None:
         _require_members(question, budget)
-        _places(question, table.route(question.question))
-        return table.price(question.question, budget) + PRICED * SECONDS_OF_A_MEMBER
+        _places(question, table.readable(question.question))
 
     def members(question: StudyRequest, budget: Budget) -> Members:
         return Members(question, table.source(question.question, budget))
@@ -121,9 +113,9 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         StudyRequest,
         StudyState,
         plan,
-        price,
         description=DESCRIPTION,
         members=members,
+        require=require,
         paths=frozenset(route.path for route in routes),
     )
 
@@ -132,9 +124,10 @@ def _answerable(question: StudyRequest, table: QuestionTable, budget: Budget) ->
     """Return what is planned of a study whose question is answered as it is, or refuse it."""
     _require_members(question, budget)
     source = table.source(question.question, budget)
+    before = thread_time()
     with within_question():
         answer = source.answer(json.dumps(question.question.request))
-    found = _planned(question, table, budget)
+    found = _planned(question, table, budget, thread_time() - before)
     for k, figure in enumerate(_places(question, table.route(question.question))[1]):
         value = value_at(answer, figure)
         if number_of(value) is None and not is_null(answer, figure):
@@ -152,14 +145,13 @@ def _require_members(question: StudyRequest, budget: Budget) -> Design:
     return design
 
 
-def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> Answer:
-    """Return members, inputs, figures, time and size of a study without answering its question, or refuse it."""
+def _planned(question: StudyRequest, table: QuestionTable, budget: Budget, each: float) -> Answer:
+    """Return members, inputs, figures, time and size of a study whose question took some processor time (s)."""
     route, design = table.route(question.question), _require_members(question, budget)
     inputs, figures = _places(question, route)
     members = Members(question, table.source(question.question, budget))
     together = members.together
-    each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
-    seconds = design.members * each
+    seconds = design.members * (SECONDS_AMONG_MANY if together else each)
     axes = zip(question.vary, inputs, strict=True)
     return {
         "path": route.path,
@@ -231,19 +223,6 @@ def _steps(pointer: str, within: Path) -> Path:
         return steps_of(pointer)
     except InvalidParameter as fault:
         raise InvalidParameter(within, fault.rule, remedy=fault.remedy) from None
-
-
-def _mean_price(members: Members, route: PostRoute, budget: Budget) -> float:
-    """Return the mean of the prices of some members, evenly spread; what is refused costs nothing."""
-    count = members.design.members
-    which = np.unique(np.linspace(0, count - 1, min(PRICED, count)).astype(np.int64)).tolist()
-    prices = []
-    for k in which:
-        try:
-            prices.append(route.price(members.read(k), budget))
-        except (MechanicsError, Refusal):
-            prices.append(0.0)
-    return sum(prices) / len(prices)
 
 
 __all__ = ["PATH", "StudyRequest", "studying"]

@@ -57,7 +57,9 @@ class StudyStatus(View):
     done: int = Field(description="Members whose results are stored.", json_schema_extra=WHOLE)
     failed: int = Field(description="Of these, members that have no result but a problem.", json_schema_extra=WHOLE)
     seconds: Seconds[float] = Field(description="Processor time that they took.")
-    predicted_seconds: Seconds[float] = Field(description="Processor time of all members, as predicted.")
+    predicted_seconds: Seconds[float] = Field(
+        description="Processor time of all members, if each takes as long as the question; 0 for one answer."
+    )
     bytes: int = Field(description="Of all results where they are stored, as predicted.", json_schema_extra=WHOLE)
     predicted_end: str | None = Field(description="When it should be finished (RFC 3339); null when it is.")
     links: list[Link] = Field(description="To what else there is.")

@@ -66,19 +66,6 @@ class TestRead:
             answering(OTHER).read(TOY, body())
 
 
-class TestPrice:
-    def test_it_is_the_routes_own(self) -> None:
-        asked = answering()
-        assert asked.price(TOY, asked.read(TOY, body())) == pytest.approx(3e-8)
-
-    def test_what_exceeds_the_budget_has_none(self) -> None:
-        asked = answering()
-        question = asked.read(TOY, body(times=[0.0] * 6))
-        with pytest.raises(BudgetExceeded) as caught:
-            asked.price(TOY, question)
-        assert (caught.value.needed, caught.value.limit) == (6, 5)
-
-
 class TestAnswer:
     def answer(self, handle: Any = None, **changes: Any) -> dict[str, Any]:
         route = TOY if handle is None else dataclasses.replace(TOY, handle=handle)
@@ -89,6 +76,11 @@ class TestAnswer:
         answer = self.answer()
         assert list(answer) == ["signature", "warnings", "time", "position", "nothing"]
         assert (answer["signature"], answer["warnings"]) == ({"source": "polhode", "version": VERSION}, [])
+
+    def test_what_exceeds_the_budget_is_refused(self) -> None:
+        with pytest.raises(BudgetExceeded) as caught:
+            self.answer(times=[0.0] * 6)
+        assert (caught.value.needed, caught.value.limit) == (6, 5)
 
     def test_every_route_has_the_budget(self) -> None:
         asked = answering()

@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ import numpy as np
 import pytest
 
 from service.app import Service
-from service.http.keys import new_key
+from service.http.keys import Key, new_key
 from service.observability.metrics import Metrics
 from service.problems import Refusal
 from service.settings import Settings
@@ -29,7 +30,7 @@ from service.studies.cluster import TRIED_AGAIN
 from service.studies.database import DATABASE
 from service.studies.folder import Ownership, data_folder
 from service.studies.store import Store, identity_of
-from service.studies.study import Owner, Quotas
+from service.studies.study import DISMISSED, Owner, Quotas
 from service.studies.supervisor import Supervisor
 from tests.service.conftest import INLINE, client_of
 from tests.service.observability.test_metrics import read
@@ -50,6 +51,9 @@ GRID: dict[str, Any] = {
     ],
     "quantities": ["/position/2/0", "/position/1/1"],
 }
+
+PLAN: dict[str, Any] = {"path": "/v1/toy", "count": 1, "seconds": 1e-3, "bytes": 0, "together": False}
+PLAN |= {"shape": [], "inputs": [], "figures": []}
 
 STUDIES, MISSING = ("polhode_studies", ()), ("polhode_study_members_missing", ())
 
@@ -356,15 +360,28 @@ async def test_a_key_sees_its_own_studies_and_is_charged(tmp_path: Path) -> None
         await submitted(client, large, **bob)
 
 
-async def test_dismissing_gives_back_what_was_not_computed(tmp_path: Path) -> None:
-    secret, line = new_key("ada")
-    (tmp_path / "keys").write_text(line.rsplit(" ", 1)[0] + " 60\n")
-    headers = {"authorization": f"Bearer {secret}"}
-    async with client_at(tmp_path / "data", keys_file=tmp_path / "keys") as client:
-        large = {**UNIFORM, "count": 3_000_000}
-        place = await submitted(client, large, **headers)
-        await client.delete(place, headers=headers)
-        await submitted(client, large, **headers)
+@pytest.mark.parametrize(("predicted", "took", "left"), [(1e5, 1.0, True), (0.0, 1e5, False)])
+async def test_a_key_is_charged_what_a_study_took(tmp_path: Path, predicted: float, took: float, left: bool) -> None:
+    supervisor, key = Supervisor(Settings(data=str(tmp_path)), TABLE, Metrics()), Key("ada", inf, 60.0, 1)
+    identity = supervisor.store.create(Owner("ada"), b"{}", PLAN, Quotas(100, 100, 10**9))
+    key.charge(predicted)
+    supervisor.charge(identity, key, predicted)
+    supervisor.store.add_chunk(identity, 0, 1, 0, took)
+    supervisor.store.end(identity, DISMISSED, "")
+
+    def admitted() -> bool:
+        try:
+            key.work(1e-3)
+        except Refusal:
+            return False
+        return True
+
+    watch = asyncio.create_task(supervisor.watch())
+    async with asyncio.timeout(30):
+        while admitted() is not left:
+            await asyncio.sleep(0.01)
+    watch.cancel()
+    supervisor.store.close()
 
 
 @pytest.mark.parametrize(
