@@ -36,8 +36,13 @@ class Server:
 
 
 def children(process: int) -> list[int]:
-    text = Path(f"/proc/{process}/task/{process}/children").read_text()
-    return [int(child) for child in text.split()]
+    """Return the processes that any thread of a process has started."""
+    found = ""
+    for thread in Path(f"/proc/{process}/task").iterdir():
+        # It may have ended since.
+        with contextlib.suppress(OSError):
+            found += (thread / "children").read_text()
+    return [int(child) for child in found.split()]
 
 
 @contextlib.contextmanager
