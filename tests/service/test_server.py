@@ -257,7 +257,8 @@ def test_several_server_processes_give_the_same_bytes_and_shared_counters_and_st
         server, f"polhode_job_seconds_count {statuses.count(200)}.0", "polhode_waiting 0.0", "polhode_long 0.0"
     )
     lines = stopped_cleanly(server, scratch, signal.SIGINT)
-    assert sum(line.get("operation") == "rotation_trajectory" for line in lines) == 30
+    # On a busy machine there are lines about requests that held the event loop, too; those have no status.
+    assert sum(line.get("operation") == "rotation_trajectory" and "status" in line for line in lines) == 30
 
 
 def server_processes(server: Server) -> list[int]:
