@@ -9,13 +9,12 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from core.assessment.feedback.entry_fault import EntryFault
 from core.assessment.feedback.languages import Sentence
 
 Locale = Literal["de", "en", "es", "fr"]
-LOCALES: tuple[Locale, ...] = get_args(Locale)
 _WITH_COMMA = ("de", "es", "fr")
 """Locales whose decimal mark is the comma."""
 

@@ -38,8 +38,6 @@ _ENOUGH = 100
 """Bits to which the distance has to be known."""
 
 _STUMPFF = [(1 / math.factorial(2 * k + 2), 1 / math.factorial(2 * k + 3)) for k in reversed(range(8))]
-_NODES = 96
-"""Of a period, or of the way to a time, alike in s: the steps are short where the motion is fast."""
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,6 @@ from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table
 from core.work import spend
 
-MOST_NODES = 20000
-"""Times at which events may be looked for."""
 _UNITS_OF_ROOTS = 0.4
 """Units of work (`core.work`) for characteristic roots, times the cube of their number."""
 _BITS = 192

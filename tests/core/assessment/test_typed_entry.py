@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from core.assessment.claims import Claim
-from core.assessment.typed_entry import LOCALES, Locale, TypedEntry, typed_entry
+from core.assessment.typed_entry import Locale, TypedEntry, typed_entry
 from core.errors import InvalidParameter
 
 
@@ -111,7 +111,7 @@ WRITTEN = {"en": ".", "de": ",", "es": ",", "fr": ","}
     st.integers(-(10**9), 10**9),
     st.integers(0, 6),
     st.integers(-30, 30),
-    st.sampled_from(LOCALES),
+    st.sampled_from(get_args(Locale)),
     st.sampled_from(["", " ", "\u202f"]),
     st.sampled_from(["", "e{}", "\u00b710^{}", " x 10^{}", "*10**{}"]),
 )
