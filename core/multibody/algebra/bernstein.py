@@ -278,12 +278,20 @@ def zero_between(coefficients: Floats, low: float, high: float) -> Pair:
     before = horner(coefficients, low, 0.0)[0]
     if before == 0.0:
         return low, 0.0
-    left, right = low, high
+    left, right, size, at = low, high, 0.0, 1.0
+    for k in range(coefficients.shape[0]):
+        size += abs(coefficients[k, 0]) * at
+        at *= max(1.0, abs(high))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (left + right)
         if not left < middle < right:
             break
-        if horner(coefficients, middle, 0.0)[0] * math.copysign(1.0, before) > 0.0:
+        here = 0.0
+        for k in range(coefficients.shape[0] - 1, -1, -1):
+            here = here * middle + coefficients[k, 0]
+        if abs(here) <= _FILTER * size:
+            here = horner(coefficients, middle, 0.0)[0]
+        if here * math.copysign(1.0, before) > 0.0:
             left = middle
         else:
             right = middle
