@@ -111,8 +111,8 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
         UndecidedKind(
             "turning-onset",
             "The direction of a beginning slip turns at once",
-            "In space, the series of the motion has no start where a contact begins to slide in a direction that turns "
-            "from the first moment on.",
+            "In space, the series of the motion has no start where a contact begins to slide without an acceleration, "
+            "in a direction that turns from the first moment on.",
             of_mechanics=False,
         ),
         UndecidedKind(

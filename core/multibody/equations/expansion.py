@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from flint import arb_mat
 
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, entry, is_zero
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import weightless
+from core.multibody.equations.varying_lines import (
+    add_onset,
+    friction_entries,
+    joined,
+    slip_coefficient,
+    slips,
+    varying_entries,
+)
 from core.multibody.laws.series import LawSeries, convolved
-from core.multibody.table.table import Row, Table
+from core.multibody.table.table import Table
 
 Series = list[Ball]
 """Coefficients of powers of time, lowest first."""
@@ -160,7 +167,8 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     """Return the Taylor coefficients of the motion of a table from its state.
 
     Friction in space turns with the slip s: its line is -mu (s/|s|) times the two lines of the slip, and the series of
-    s/|s| is found to one power with that of s.
+    s/|s| is found to one power with that of s. What begins to slide with an acceleration has s/|s| = (s/t)/|s/t|, whose
+    coefficient of a power depends on that acceleration's: a term of the matrix that is found anew for every power.
 
     Parameters
     ----------
@@ -187,10 +195,19 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     found: list[Series] = [[] for _ in chosen]
     rates: list[Series] = [[v] for v in table.v]
     # Entries of W and of W + X that vary, as series.
-    varying = [_varying(table.rows[r].rates, places) for r in chosen]
-    pushing = [_joined(varying[k], _dragging(table, table.rows[r], places, rates)) for k, r in enumerate(chosen)]
+    varying = [varying_entries(table.rows[r].rates, places) for r in chosen]
+    pushing = [joined(varying[k], friction_entries(table, table.rows[r], places, rates)) for k, r in enumerate(chosen)]
     laws = LawSeries(table.acting)
+    onsets = [n for n, r in enumerate(chosen) if table.rows[r].slide is not None and not slips(table, table.rows[r])]
     for k in range(order - 1):
+        if k == 1:
+            onsets = [n for n in onsets if not is_zero(slip_coefficient(table.rows[chosen[n]], rates, 1))]
+        if k > 0 and onsets:
+            matrix = saddle(table, chosen)
+            for n in onsets:
+                add_onset(matrix, table.rows[chosen[n]], found[n][0], rates, k)
+                pushing[n] = joined(varying[n], friction_entries(table, table.rows[chosen[n]], places, rates))
+            inverse = matrix.inv()
         right = [ZERO] * (count + len(chosen))
         if k == 0:
             for i, x in table.load.items():
@@ -219,86 +236,6 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     for n, r in enumerate(chosen):
         multipliers[r] = found[n]
     return Expansion(places, multipliers)
-
-
-class _Turning:
-    """The direction s/|s| of a slip along a motion whose own coefficients are still being found."""
-
-    def __init__(self, lines: Sequence[LinearForm], rates: Sequence[Series]) -> None:
-        self._lines, self._rates = lines, rates
-        self._slip: tuple[Series, Series] = ([], [])
-        self._size: Series = []
-        self.units: tuple[Series, Series] = ([], [])
-
-    def at(self, power: int) -> tuple[Ball, Ball]:
-        """Return the coefficients of the two components."""
-        while len(self._size) <= power:
-            k = len(self._size)
-            for slip, line in zip(self._slip, self._lines, strict=True):
-                slip.append(sum((poly[()] * self._rates[j][k] for j, poly in line.items()), ZERO))
-            square = sum((convolved(s, s) for s in self._slip), ZERO)
-            # |s|^2 and s = |s| u, power by power.
-            inner = convolved(self._size[1:], self._size[1:])
-            self._size.append(square.sqrt() if k == 0 else (square - inner) / (2 * self._size[0]))
-            for unit, slip in zip(self.units, self._slip, strict=True):
-                unit.append((slip[k] - convolved(unit, self._size[1:])) / self._size[0])
-        return self.units[0][power], self.units[1][power]
-
-
-class _Entry:
-    """An entry of a line that varies, along a motion whose own coefficients are still being found."""
-
-    def __init__(self, coefficient: Callable[[int], Ball]) -> None:
-        self._coefficient = coefficient
-        self._known: Series = []
-
-    def varying(self, power: int) -> Series:
-        """Return the coefficients from that of time to that of a power of it."""
-        while len(self._known) < power:
-            self._known.append(self._coefficient(len(self._known) + 1))
-        return self._known[:power]
-
-
-def _varying(line: LinearForm, places: Sequence[Series]) -> dict[int, _Entry]:
-    found = {}
-    for j, poly in line.items():
-        slopes = [(key[0], x) for key, x in poly.items() if key]
-        if slopes:
-            found[j] = _Entry(partial(_along, slopes, places))
-    return found
-
-
-def _along(slopes: Sequence[tuple[int, Ball]], places: Sequence[Series], power: int) -> Ball:
-    """Return a coefficient of an affine polynomial."""
-    return sum((x * places[i][power] for i, x in slopes), ZERO)
-
-
-def _dragging(table: Table, row: Row, places: Sequence[Series], rates: Sequence[Series]) -> dict[int, _Entry]:
-    """Return the entries of the line of friction of a row that vary."""
-    if row.slide is None or not any(not is_zero(x) for x in table.slip_of(row)):
-        return _varying(row.drag, places)
-    factor, along, across = row.slide
-    turning = _Turning((along, across), rates)
-
-    def rubbed(first: Ball, second: Ball, power: int) -> Ball:
-        units = turning.at(power)
-        return first * units[0] + second * units[1]
-
-    return {
-        j: _Entry(partial(rubbed, *(factor * line.get(j, {}).get((), ZERO) for line in (along, across))))
-        for j in {*along, *across}
-    }
-
-
-def _joined(first: Mapping[int, _Entry], second: Mapping[int, _Entry]) -> dict[int, _Entry]:
-    found = dict(first)
-    for j, more in second.items():
-        found[j] = _Entry(partial(_sum, found[j], more)) if j in found else more
-    return found
-
-
-def _sum(first: _Entry, second: _Entry, power: int) -> Ball:
-    return first.varying(power)[-1] + second.varying(power)[-1]
 
 
 def leading_sign(series: Sequence[Ball]) -> int:

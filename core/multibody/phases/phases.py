@@ -32,7 +32,7 @@ from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, 
 from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness
 from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import Track, Tracks
-from core.multibody.phases.turning_slip import turns
+from core.multibody.phases.turning_slip import begins_at_once, turns
 from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
@@ -246,10 +246,10 @@ class _Run:
         now = phase_table(table, found.unilateral, found.states, q, v)
         self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
         for one in found.unilateral:
-            if one.name in self.turning and is_zero(slip_rate(one, q, v)):
+            if one.name in self.turning and is_zero(slip_rate(one, q, v)) and not begins_at_once(now.table, one.name):
                 return Problem(
                     "turning-onset",
-                    "what begins to slide in space would turn the direction of its friction from the first moment on",
+                    "what begins to slide in space without an acceleration turns its friction from the first moment on",
                     (one.name,),
                     decided_by="a velocity with which it slides already",
                 )

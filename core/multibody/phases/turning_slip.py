@@ -131,7 +131,8 @@ class TurningSlip(Motion):
             if row.slide is not None:
                 slips, gains = table.slip_of(row), [motion.of_rates(line)[1] for line in row.slide[1:]]
                 fast, change = (sum((x * x for x in vector), ZERO).sqrt() for vector in (slips, gains))
-                if change > 0:
+                # What begins to slide has no slip yet.
+                if change > 0 and fast > 0:
                     times.append(arb((_PART * fast / change).mid()))
         return min(times, key=float)
 
@@ -142,6 +143,8 @@ class TurningSlip(Motion):
                 continue
             x, y = table.slip_of(row)
             size = (x * x + y * y).sqrt()
+            if not size > 0:
+                continue
             gains = [motion.of_rates(line)[1] for line in row.slide[1:]]
             loss = -(x * gains[0] + y * gains[1]) / size
             if float(size) < ENDED * fastest["m"] and loss > 0:
@@ -235,6 +238,8 @@ class TurningWhole(Whole):
         one, axis, row = self.turning[force.name]
         assert one.tangents is not None
         slip = np.array([_slip(line or {}, v) for line in (one.slip, one.across)])
+        # What begins to slide does so along the first direction.
+        slip[0, ~slip.any(axis=0)] = 1.0
         length = np.maximum(np.hypot(slip[0], slip[1]), 1e-300)
         along = (float(one.tangents[0][axis]) * slip[0] + float(one.tangents[1][axis]) * slip[1]) / length
         push = float(one.kinetic) * multipliers[:, row]
@@ -274,6 +279,13 @@ def turning_model(
     small = Reduced(table, identity(len(table.names)), table.names)
     whole = TurningWhole(found.measures, small, gain, gain, [(everything, motion)], turning=turning)
     return Modelled(found, whole, [Piece(everything, table, gain, chosen)], start.moved, start.fitted)
+
+
+def begins_at_once(table: Table, name: str) -> bool:
+    """Return whether what slips from rest in space does so with an acceleration along its first direction."""
+    motion = expansion(table, 2)
+    lines = [row.slide[1] for row in table.rows if row.slide is not None and row.name == name]
+    return all(bool(motion.of_rates(line)[1] > 0) for line in lines)
 
 
 def turns(table: Table, names: Sequence[str], order: int) -> list[str]:
