@@ -72,7 +72,7 @@ REGISTRY: Mapping[str, ProblemType] = {
             "duplicate-key",
             400,
             "An object names a key twice",
-            "Which of the two values is meant cannot be known, so neither is taken.",
+            "It is not clear which of the two values is meant. Send each key once.",
         ),
         ProblemType(
             "invalid-archive",
@@ -89,17 +89,25 @@ REGISTRY: Mapping[str, ProblemType] = {
             "results-not-ready",
             404,
             "The study has no results",
-            "Ask when its status is successful; a dismissed study never has.",
+            "Fetch them when its status is successful; a dismissed study has none.",
         ),
         ProblemType("not-acceptable", 406, "No representation fits the Accept header", "Accept application/json."),
         ProblemType(
-            "body-too-slow", 408, "The body did not arrive in time", "The limit is named; send the body without pauses."
+            "body-too-slow",
+            408,
+            "The body did not arrive in time",
+            "The detail states the limit; send the body without pauses.",
         ),
-        ProblemType("body-too-large", 413, "The body is too large", "The limit is named; send less or split it."),
+        ProblemType(
+            "body-too-large",
+            413,
+            "The body is too large",
+            "The detail states the limit; send less, or several requests.",
+        ),
         ProblemType(
             "unknown-host",
             421,
-            "The service is not known under this name",
+            "The service does not answer to this host name",
             "Use a host name of the setting allowed_hosts.",
         ),
         ProblemType(
@@ -144,34 +152,34 @@ REGISTRY: Mapping[str, ProblemType] = {
         ProblemType(
             "budget-exceeded",
             422,
-            "The question needs more work than one question may have",
-            "The members what, needed and limit say how much; ask for less, or in parts.",
+            "The request needs more work than one request may have",
+            "The members what, needed and limit state how much; request less, or several parts.",
         ),
-        ProblemType("mechanics-error", 422, "The mechanics refuses the question", "The detail says why."),
+        ProblemType("mechanics-error", 422, "The request has no answer", "The detail says why."),
         ProblemType(
             "too-busy",
             429,
             "More work is waiting than can be done in time",
-            "Ask again after the time in the Retry-After header.",
+            "Send the request again after the time in the Retry-After header.",
         ),
         ProblemType(
             "quota-exceeded",
             429,
             "The key's quota is used up",
-            "Ask again after the time in the Retry-After header, or for less.",
+            "Send the request again after the time in the Retry-After header, or request less.",
         ),
         ProblemType(
             "internal-error",
             500,
             "The service failed",
-            "Not the question's fault. Report the id, under which the failure is logged.",
+            "The request is not at fault. Report the id, under which the failure is logged.",
         ),
         ProblemType(
             "self-check-failed",
             500,
             "The answer did not pass its check",
-            "What was found does not keep a law of mechanics within its stated errors, so that it is wrong and is not "
-            "sent. Not the question's fault. Members law, connection, time, residual and allowed say which; report the "
+            "The result violates a law of mechanics beyond its stated errors. It is therefore wrong and not sent. The "
+            "request is not at fault. The members law, connection, time, residual and allowed state which; report the "
             "id of the request.",
         ),
         ProblemType(
@@ -184,28 +192,28 @@ REGISTRY: Mapping[str, ProblemType] = {
             "worker-lost",
             503,
             "The process that computed this answer died",
-            "Other questions are not affected. Ask again.",
+            "Other requests are not affected. Send the request again.",
         ),
         ProblemType(
             "deadline-exceeded",
             503,
             "The computation took longer than it may",
-            "Ask for fewer samples or a lower accuracy.",
+            "Request fewer samples or a lower accuracy.",
         ),
         ProblemType(
             "no-room",
             503,
             "Not enough memory for the answer",
-            "Memory or files of the machine are used up. Ask again in a moment, or for fewer samples.",
+            "Memory or files of the machine are used up. Send the request again in a moment, or request fewer samples.",
         ),
         ProblemType(
             "storage-unavailable",
             503,
-            "What is to be stored cannot be",
+            "The study cannot be stored",
             "The disk is full, or the folder of data cannot be written; the detail says which. Nothing was accepted.",
         ),
-        ProblemType("shutting-down", 503, "The service is being stopped", "Ask again in a moment."),
-        ProblemType("not-ready", 503, "The service is still preparing itself", "Ask again in a moment."),
+        ProblemType("shutting-down", 503, "The service is being stopped", "Send the request again in a moment."),
+        ProblemType("not-ready", 503, "The service is still starting", "Send the request again in a moment."),
     )
 }
 
