@@ -40,7 +40,6 @@ from core.multibody.language.joints import Pin
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import AssembledBody, Assembly
-from core.multibody.table.chains import has_chain
 from core.multibody.table.description import Described, described
 from core.near_names import near_and_all
 from core.work import spend
@@ -92,7 +91,7 @@ def assembled(scene: Scene, numerals: Numerals | None = None) -> AssembledScene:
     if scene.assemble is None:
         return AssembledScene(scene, None)
     movable = _movable(scene)
-    if has_chain(scene):
+    if not scene.continues:
         raise NotApplicable(
             "a chain has the lengths of its sides from the places of its ends, which are no sketch then",
             path=("assemble",),

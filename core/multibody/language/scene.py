@@ -81,6 +81,16 @@ class Scene:
         """Return the connections, each with its number in the description."""
         return enumerate(self.connections)
 
+    @property
+    def one_sided(self) -> bool:
+        """Whether it has anything that pushes and does not pull, or a string of which a jerk is foreseen."""
+        return any(connection.one_sided for connection in self.connections)
+
+    @property
+    def continues(self) -> bool:
+        """Whether its motion goes on where a string becomes slack: with a chain it does not."""
+        return all(connection.continues for connection in self.connections)
+
     def names(self) -> tuple[str, ...]:
         """Return the names of the connections: those given, else kind and number."""
         found: dict[str, int] = {}

@@ -17,7 +17,7 @@ from core.multibody.motion.modelling import modelled
 from core.multibody.phases.before_start import follow_backwards
 from core.multibody.phases.described_system import DescribedSystem
 from core.multibody.phases.phase import Phase, PhaseMotion
-from core.multibody.phases.phases import motion_in_phases, one_sided
+from core.multibody.phases.phases import motion_in_phases
 from core.multibody.phases.smooth_motion import ends_within, smooth_motion
 from core.multibody.phases.tracks import late
 from core.multibody.start import (
@@ -31,7 +31,6 @@ from core.multibody.start import (
     slack_strings,
 )
 from core.multibody.statics.equilibria import equilibria_of
-from core.multibody.table.chains import has_chain
 from core.multibody.trajectory.scene_request import SceneRequest
 
 THRESHOLDS = "thresholds"
@@ -85,9 +84,9 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
 
 def _motion_of(scene: Scene, request: SceneRequest) -> PhaseMotion:
     """Return the motion of a scene: through events where something is unilateral, or a string is slack at times."""
-    if one_sided(scene):
+    if scene.one_sided:
         return _in_phases(scene, request)
-    passes = request.method is None and not has_chain(scene)
+    passes = request.method is None and scene.continues
     try:
         found = modelled(scene)
     except SlackAtStart:

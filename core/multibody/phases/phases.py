@@ -48,11 +48,6 @@ _STILL = 60
 """Events at one time before no motion is seen in them."""
 
 
-def one_sided(scene: Scene) -> bool:
-    """Return whether a scene has anything that pushes and does not pull, or a string of which a jerk is foreseen."""
-    return any(connection.one_sided for connection in scene.connections)
-
-
 def motion_in_phases(scene: Scene, end: float, numerals: Callable[[], Numerals] | None = None) -> PhaseMotion:
     """Return the phases of a scene up to a time, whose numbers may be read in another way.
 

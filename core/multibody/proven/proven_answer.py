@@ -27,7 +27,6 @@ from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
 from core.multibody.parts.joined_model import joined_model
-from core.multibody.phases.phases import one_sided
 from core.multibody.proven.audited_digits import audited_digits
 from core.multibody.proven.part_proof import PartProof, ProvenAnswer, ProvenColumn
 from core.multibody.start import NumberKind, accelerations_of, energy_of, forces_of_start
@@ -73,7 +72,7 @@ def proven_answer(
         Where the answer that was found does not keep the laws of mechanics: see `core.multibody.audit`.
     """
     check_digits(digits, 8 * len(scene.bodies) * max(1, len(times)))
-    if one_sided(scene):
+    if scene.one_sided:
         raise NotApplicable(
             "contacts are decided with the digits of their own set-up, and no more are proven",
             path=("connections",),

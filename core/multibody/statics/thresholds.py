@@ -31,7 +31,6 @@ from core.multibody.equations.packed import nearest
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.language.written import Number
-from core.multibody.table.chains import has_chain
 from core.multibody.table.description import Described, described
 from core.near_names import did_you_mean
 from core.work import spend
@@ -132,7 +131,7 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
         Where other places touch with another value.
     """
     path, least, most = _checked(scene, question, where)
-    if has_chain(scene):
+    if not scene.continues:
         raise NotApplicable(
             "thresholds of rest are not answered beside a chain",
             path=where,

@@ -30,18 +30,12 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     is_zero,
 )
-from core.multibody.language.scene import Scene
 from core.multibody.language.strings import Chain
 from core.multibody.table.connection_effects import Force, Limit
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.momenta import StateFunction
 from core.multibody.table.rows import add_rows
-
-
-def has_chain(scene: Scene) -> bool:
-    """Return whether a chain is in a scene, which then ends where a string becomes slack."""
-    return not all(connection.continues for connection in scene.connections)
 
 
 @add_rows.register
