@@ -151,10 +151,13 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
     number = next(i for i, one in enumerate(phase.unilateral) if one.name == (ended[0] or Row("", None, {})).name)
     crossings = []
     states = [State.STICK if i == number else state for i, state in enumerate(phase.states)]
+    scale = FLOOR * max(abs(float(x.mid())) for x in runs[0].table.q)
+    both = zip(runs[0].table.q, runs[1].table.q, strict=True)
+    known = [arb(x.mid(), SAFETY_FACTOR * float(abs(x - y).mid()) + scale) for x, y in both]
     for run in runs:
         # What is left of the slip is taken out, as the connections would.
         table = phase_table(base.measures.table, phase.unilateral, states, run.table.q, run.table.v).table
-        project(table, table.q)
+        project(table, known)
         watch = Watch(number, "slip", phase.unilateral[number])
         crossings.append(Crossing(run.starts[-1], watch, table.q, table.v))
     return crossings
