@@ -25,7 +25,7 @@ from tests.oracles.plain_engine.steps import Crossing, Stepper
 MOST_EVENTS = 300
 AT_ONCE = 60
 """Impacts at one instant after which there is no end of them."""
-SHORT = 1e-4
+SHORT = 1e-6
 """Length (m) at which one vanishes soon, in a time that its rate tells."""
 SETTLED = 1e-5
 """Share of the largest rate so far below which what bounces comes to rest: what the rest of the bounces move is of

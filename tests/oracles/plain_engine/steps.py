@@ -175,7 +175,7 @@ def _first_loss(
     nothing = NOTHING.get(kind, NO_FORCE)
     for k in range(1, len(times)):
         if values[k] < -nothing:
-            if values[k - 1] > nothing:
+            if values[k - 1] > nothing and figure(times[k - 1]) > 0.0:
                 return float(brentq(figure, times[k - 1], times[k], xtol=1e-15)), False
             return _from_zero(figure, times[k - 1], times[k]), False
         if k + 1 < len(times) and nothing < values[k] < values[k - 1] and values[k] <= values[k + 1]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.multibody.answer import SceneSolution
@@ -81,6 +83,63 @@ def test_a_body_that_is_thrown_up_turns_back_with_quadratic_drag() -> None:
         found = answer(scene, times, outputs=("trajectory",))
         compared(found, "p.velocity", lambda t: [0, rate(t)])
         compared(found, "p.position", lambda t: [0, height(t)])
+
+
+def test_a_pendulum_turns_back_with_quadratic_drag() -> None:
+    """The speed has a corner at each turning point, which lies on a circle: angle'' = -10 sin(angle) -+ angle'^2/5."""
+    sign, begin, end, now = -1.0, [math.asin(0.6), 0.0], 4.0, 0.0
+    while True:
+        run = solve_ivp(
+            lambda _, y, sign=sign: [y[1], -10.0 * math.sin(y[0]) - sign * y[1] ** 2 / 5.0],
+            (now, end),
+            begin,
+            events=_at_rest(-sign),
+            **EXACT,
+        )
+        if run.status == 0:
+            break
+        sign, now, begin = -sign, run.t[-1], [run.y[0, -1], 0.0]
+    angle, rate = run.y[:, -1]
+    scene: dict[str, Any] = {
+        "gravity": [0, -10],
+        "bodies": {"p": {"mass": 1, "at": [0.6, -0.8]}},
+        "connections": [
+            {"kind": "rod", "a": "p", "b": [0, 0]},
+            {"kind": "force", "place": "p", "force": ["-0.2*speed*vx", "-0.2*speed*vy"]},
+        ],
+    }
+    found = answer(scene, [0.0, 1.04, end], outputs=("trajectory",))
+    assert found.trajectory is not None
+    own = found.trajectory.columns["p.velocity"]
+    assert own.values[2] == pytest.approx([rate * math.cos(angle), rate * math.sin(angle)], abs=1e-12)
+    # 0.02 s after the first turning point, by hand to five digits: 10 sin(angle) cos(angle) times the time.
+    assert own.values[1] == pytest.approx([0.0953, -0.0578], abs=1e-3)
+    assert own.error < 1e-14
+
+
+EXACT: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "first_step": 1e-3}
+
+
+def _at_rest(direction: float) -> Callable[..., float]:
+    def rate(_: float, y: Sequence[float]) -> float:
+        return y[1]
+
+    rate.terminal, rate.direction = True, direction  # type: ignore[attr-defined]
+    return rate
+
+
+def test_a_throw_that_is_almost_upright_turns_back_with_quadratic_drag() -> None:
+    """The speed is least where the throw is highest, and has no corner there."""
+    run = solve_ivp(
+        lambda _, v: [-v[0] * math.hypot(*v) / 10.0, -10.0 - v[1] * math.hypot(*v) / 10.0],
+        (0.0, 0.2),
+        [1e-3, 1.0],
+        **EXACT,
+    )
+    scene = forced(["-speed*vx/10", "-speed*vy/10"], body={"velocity": ["1e-3", 1]}) | {"gravity": [0, -10]}
+    found = answer(scene, [0.0, 0.05, 0.2], outputs=("trajectory",))
+    assert found.trajectory is not None
+    assert found.trajectory.columns["p.velocity"].values[2] == pytest.approx(run.y[:, -1], abs=1e-12)
 
 
 @pytest.mark.parametrize("power", [3, 5, 9])

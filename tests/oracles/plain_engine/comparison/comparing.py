@@ -124,7 +124,7 @@ def _compare(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
     if ended is None and solution.ended is not None and solution.ended.kind in ("singular", "end-of-chain", "lift-off"):
         ended = (solution.ended.kind, solution.ended.time)
     if ended is not None:
-        answered = [one for one in answered if one[0] != ended[0]]
+        answered = [one for one in answered if (one[0], one[2]) != ended]
     fault = _first_event(plain, answered, min(until, ended[1] if ended else np.inf), first)
     if fault is not None:
         verdict.differences.append(fault)
