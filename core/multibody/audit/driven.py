@@ -1,4 +1,4 @@
-"""Definitions of what formulas of time drive: the turn of a motor, its rate, and the length of a rod."""
+"""Definitions of what formulas drive or hold: the turn of a motor, its rate, the length of a rod, relations."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from core.multibody.audit.definition import Definition
 from core.multibody.audit.formulas import FormulaValue
 from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.laws import Twisting
-from core.multibody.audit.placement import Motion, Numbers, Placement
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, rate
 
 
 @dataclass(frozen=True)
@@ -72,3 +73,40 @@ class DrivenRod(RodDefinition):
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
         return {"length": self.distance(placement) - self.drive.value(placement, {})}
+
+
+@dataclass(frozen=True)
+class RelationDefinition(Definition):
+    """A formula equals another one; the force acts along their difference.
+
+    Attributes
+    ----------
+    arms : tuple of Place
+        The places that the formulas name.
+    """
+
+    kind: ClassVar[str] = "relation"
+    of: FormulaValue
+    equals: FormulaValue
+    arms: tuple[Place, ...]
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return "t" in self.of.inputs or "t" in self.equals.inputs
+
+    @property
+    def driven(self) -> float:
+        """See `Definition.driven`."""
+        return max(self.of.quickness(0.0), self.equals.quickness(0.0)) if self.works() else 0.0
+
+    def apart(self, placement: Placement) -> Numbers:
+        """Return what stays zero, shape ()."""
+        return self.of.value(placement, {}) - self.equals.value(placement, {})
+
+    def held(self, placement: Placement) -> Mapping[str, Numbers]:
+        """See `Definition.held`."""
+        return {"attitude": self.apart(placement)}
+
+    def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.efforts`."""
+        return {f"{self.name}.force": rate(self.apart, placement, motion)}

@@ -10,11 +10,13 @@ from core.formulas import Node
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
+from core.multibody.audit.driven import RelationDefinition
 from core.multibody.audit.formula_forces import ForcesByFormulas, PullByFormula, TwistByFormula
 from core.multibody.audit.formulas import FormulaValue, Read, names_of_place, names_of_turn, time_of
 from core.multibody.audit.joints import approach
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, length, spin_of
 from core.multibody.language.forces import AppliedForce, Damper, Field, Spring, Torque
+from core.multibody.language.joints import Relation
 from core.multibody.language.motion_formulas import TIME, TURNS, motion_formula, names_of_bodies
 
 
@@ -129,3 +131,16 @@ def field(connection: Field, reader: Reader, name: str, path: Path) -> Definitio
         factor = 1.0 if what == "force" else reader.bodies[body].mass
         every.append((place, _components(reader, given, names_of_place(place), (*path, what)), factor))
     return ForcesByFormulas(name, bodies, tuple(every))
+
+
+@definition_of.register
+def relation(connection: Relation, reader: Reader, name: str, path: Path) -> Definition:
+    """Return the definition of a relation."""
+    of, equals = (
+        value_or_formula(reader, value, {}, (*path, what))
+        for what, value in (("of", connection.of), ("equals", connection.equals))
+    )
+    named = {one.rpartition(".")[0]: None for one in (*of.inputs, *equals.inputs) if "." in one}
+    places = tuple(reader.place(place, path) for place in named)
+    bodies = tuple(dict.fromkeys(body for place in places for body in place.bodies))
+    return RelationDefinition(name, bodies, of, equals, places)

@@ -101,3 +101,17 @@ class GuideCurve(Connection):
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""
         return [(carrier_of(self.on), aspect) for aspect in ATTITUDE]
+
+
+@dataclass(frozen=True)
+class Relation(Connection):
+    """A formula of places and angles equals a number, or another formula: gears, racks, screws, belts."""
+
+    of: str
+    equals: Number = 0
+    name: str | None = None
+    kind: ClassVar[str] = "relation"
+
+    def formulas(self) -> Iterable[object]:
+        """See `Connection.formulas`."""
+        return (self.of, self.equals)

@@ -19,7 +19,7 @@ from core.multibody.language.forces import (
     Torque,
     TorsionSpring,
 )
-from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
+from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Relation, Rod, Slider, Weld
 from core.multibody.language.strings import Chain, String
 
 KINDS: Mapping[str, type[Connection]] = MappingProxyType(
@@ -31,6 +31,7 @@ KINDS: Mapping[str, type[Connection]] = MappingProxyType(
             Weld,
             Slider,
             Rod,
+            Relation,
             Rolling,
             GuideCurve,
             Contact,

@@ -19,6 +19,7 @@ from core.multibody.table import (
     formula_laws,
     joints,
     laws,
+    relations,
     rolling_in_space,
     strings,
 )
@@ -28,7 +29,7 @@ from core.multibody.table.measures import Measures
 from core.multibody.table.moving_places import driven_works
 from core.multibody.table.rows import add_rows
 
-FORMS = (attraction, chains, contact_geometry, formula_laws, joints, laws, rolling_in_space, strings)
+FORMS = (attraction, chains, contact_geometry, formula_laws, joints, laws, relations, rolling_in_space, strings)
 """The modules with the forms of `add_rows` for the kinds of the catalogue: their import registers them."""
 
 

@@ -62,7 +62,7 @@ def add_law(
         Force on each coordinate where the value is one.
     """
     numbers = measures.numerals.let
-    inputs = {one: _input(measures, one, own, path) for one in sorted(formula.names)}
+    inputs = {one: input_of(measures, one, own, path) for one in sorted(formula.names)}
     used = {one: numbers[one] for one in names_of(formula.root) if one in numbers}
     rates = linear_in_rates(formula.root, inputs, used)
     for one, factor in (rates or {}).items():
@@ -76,7 +76,8 @@ def add_law(
     return len(measures.table.laws) - 1
 
 
-def _input(measures: Measures, name: str, own: Own, path: Path) -> Input:
+def input_of(measures: Measures, name: str, own: Own, path: Path) -> Input:
+    """Return what a name of a formula stands for."""
     if name in own:
         return own[name]
     if name == TIME:

@@ -7,6 +7,8 @@ rate. What drives is then a row as any other: its force, its work and its motion
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from core.errors import InvalidParameter, Path
 from core.formulas import Node, value_of
 from core.multibody.algebra.polynomials import (
@@ -23,7 +25,7 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     product,
 )
-from core.multibody.language.motion_formulas import motion_formula
+from core.multibody.language.motion_formulas import TIME, motion_formula
 from core.multibody.language.numerals import BALLS
 from core.multibody.laws.switches import SWITCHING
 from core.multibody.table.measures import Measures
@@ -59,7 +61,7 @@ def of_time(measures: Measures, name: str, value: object, path: Path) -> Poly | 
     formula = motion_formula(value, measures.numerals, (), (), path)
     if formula is None:
         return None
-    found = _Writer(measures, name, path).of(formula.root)
+    found = FormulaRows(measures, name, path, {TIME: coordinate(clock(measures))}).of(formula.root)
     if not all(measures.table.q[i].is_finite() for key in found for i in key):
         raise InvalidParameter(
             path, "have a value at the start: it divides by zero, or leaves the domain of a function"
@@ -67,17 +69,25 @@ def of_time(measures: Measures, name: str, value: object, path: Path) -> Poly | 
     return found
 
 
-class _Writer:
-    """Adds the rows of one formula."""
+class FormulaRows:
+    """Adds the rows of one formula.
 
-    def __init__(self, measures: Measures, name: str, path: Path) -> None:
-        self.measures, self.table, self.name, self.path = measures, measures.table, name, path
+    Parameters
+    ----------
+    name : str
+        Of the connection.
+    names : mapping of str to polynomial
+        What the names of the formula stand for, but those that are numbers.
+    """
+
+    def __init__(self, measures: Measures, name: str, path: Path, names: Mapping[str, Poly]) -> None:
+        self.measures, self.table, self.name, self.path, self.names = measures, measures.table, name, path, names
 
     def of(self, node: Node) -> Poly:
         """Return a part of the formula."""
         numbers = self.measures.numerals.let
         if node.kind == "name" and node.text not in numbers:
-            return coordinate(clock(self.measures))
+            return self.names[node.text]
         if not node.inner:
             return constant(value_of(node, numbers, BALLS))
         inner = [self.of(one) for one in node.inner]
@@ -104,7 +114,7 @@ class _Writer:
                 return self._power(first, last)
             case "sqrt":
                 self._require_positive(first)
-                root = self._coordinate(self._value(first).sqrt())
+                root = self._coordinate(self._value(first).sqrt(), first)
                 self._hold(difference(product(root, root), first))
                 return root
             case "sin" | "cos" | "tan":
@@ -128,6 +138,12 @@ class _Writer:
         rule = "be a formula of time that has one piece" if kind in SWITCHING else f"do without {kind}"
         raise InvalidParameter(self.path, f"{rule} where it drives something")
 
+    def _require_timed(self, poly: Poly) -> None:
+        """Refuse functions of places whose rows hold rates alone: the start could not be put onto them."""
+        if not self._is_timed(poly):
+            rule = "have sums, products, quotients, whole powers and square roots alone of what is no time"
+            raise InvalidParameter(self.path, rule)
+
     def _require_positive(self, poly: Poly) -> None:
         """Refuse roots and powers that have no rate at the start."""
         if not self._value(poly) > 0:
@@ -136,11 +152,18 @@ class _Writer:
     def _value(self, poly: Poly) -> Ball:
         return evaluated(poly, self.table.q)
 
-    def _coordinate(self, value: Ball) -> Poly:
-        count = sum(name.startswith(f"{self.name}.time") for name in self.table.names)
-        index = self.table.coordinate(f"{self.name}.time{count + 1}", "1", value)
-        self.table.timed.add(index)
+    def _coordinate(self, value: Ball, *of: Poly) -> Poly:
+        """Return a coordinate whose value follows from polynomials."""
+        count = sum(name.startswith(f"{self.name}.formula") for name in self.table.names)
+        index = self.table.coordinate(f"{self.name}.formula{count + 1}", "1", value)
+        if all(self._is_timed(poly) for poly in of):
+            self.table.timed.add(index)
         return coordinate(index)
+
+    def _is_timed(self, poly: Poly) -> bool:
+        """Return whether the time alone decides of a polynomial."""
+        timed = self.table.timed
+        return all(i in timed or self.table.units[i] == "s" for key in poly for i in key)
 
     def _hold(self, measure: Poly) -> None:
         self.table.rows.append(Row.held(self.name, measure))
@@ -158,14 +181,14 @@ class _Writer:
         for one, other in ((first, last), (last, first)):
             if degree(one) <= 0:
                 return combined((_constant(one), other))
-        found = self._coordinate(self._value(first) * self._value(last))
+        found = self._coordinate(self._value(first) * self._value(last), first, last)
         self._hold(difference(found, product(first, last)))
         return found
 
     def _quotient(self, first: Poly, last: Poly) -> Poly:
         if degree(last) <= 0:
             return combined((1 / _constant(last), first))
-        found = self._coordinate(self._value(first) / self._value(last))
+        found = self._coordinate(self._value(first) / self._value(last), first, last)
         self._hold(difference(product(found, last), first))
         return found
 
@@ -176,7 +199,8 @@ class _Writer:
         whole = given.unique_fmpz()
         if whole is None or not 0 <= abs(int(whole)) <= LARGEST_PRODUCT:
             self._require_positive(base)
-            found = self._coordinate(self._value(base) ** given)
+            self._require_timed(base)
+            found = self._coordinate(self._value(base) ** given, base)
             self._roll((base, found), (combined((-given, found)), base))
             return found
         found = constant(ONE)
@@ -187,19 +211,22 @@ class _Writer:
 
     def _direction(self, angle: Poly) -> tuple[Poly, Poly]:
         """Return cosine and sine of an angle."""
-        sine, cosine = map(self._coordinate, self._value(angle).sin_cos())
+        self._require_timed(angle)
+        sine, cosine = (self._coordinate(x, angle) for x in self._value(angle).sin_cos())
         self._hold(combined((ONE, product(cosine, cosine)), (ONE, product(sine, sine)), (-ONE, constant(ONE))))
         self._roll((cosine, sine), (combined((-ONE, sine)), cosine), (constant(-ONE), angle))
         return cosine, sine
 
     def _exponential(self, exponent: Poly) -> Poly:
-        found = self._coordinate(self._value(exponent).exp())
+        self._require_timed(exponent)
+        found = self._coordinate(self._value(exponent).exp(), exponent)
         self._roll((constant(ONE), found), (combined((-ONE, found)), exponent))
         return found
 
     def _integral(self, value: Ball, slope: Poly, argument: Poly) -> Poly:
         """Return what changes by the change of an argument over a slope."""
-        found = self._coordinate(value)
+        self._require_timed(argument)
+        found = self._coordinate(value, argument)
         self._roll((slope, found), (constant(-ONE), argument))
         return found
 

@@ -1,0 +1,44 @@
+"""Relations between places and angles that formulas say: gears, racks, screws, belts."""
+
+from __future__ import annotations
+
+from core.balls import as_text
+from core.errors import InvalidParameter, Path, PlacesDisagree
+from core.multibody.algebra.polynomials import ONE, Poly, constant, difference, evaluated, size
+from core.multibody.language.joints import Relation
+from core.multibody.language.motion_formulas import TIME, TURNS
+from core.multibody.table.formula_laws import formula_at, input_of
+from core.multibody.table.formulas_of_time import FormulaRows
+from core.multibody.table.measures import CLOSE, Measures
+from core.multibody.table.rows import add_rows
+
+
+@add_rows.register
+def relation(connection: Relation, measures: Measures, name: str, path: Path) -> None:
+    """Hold a formula at a value; the force is the generalised one that acts along the formula."""
+    of, names = _side(measures, name, connection.of, (*path, "of"))
+    equals, _ = _side(measures, name, connection.equals, (*path, "equals"))
+    if not names - {TIME}:
+        raise InvalidParameter((*path, "of"), 'name places or angles of bodies, such as "2*a.angle + 5*b.angle"')
+    apart = difference(of, equals)
+    missed, q = evaluated(apart, measures.table.q), measures.table.q
+    if not (measures.sketch or abs(missed) < CLOSE * (ONE + size(apart, q))):
+        rule = f"be {as_text(evaluated(of, q), 10)}, as the formula is at the start"
+        raise PlacesDisagree((*path, "equals"), rule, remedy="change it, or move the bodies")
+    row = measures.hold(name, apart)
+    measures.force(
+        f"{name}.force", [(row, constant(ONE))], "N m" if all(one.rpartition(".")[2] in TURNS for one in names) else "N"
+    )
+
+
+def _side(measures: Measures, name: str, value: object, path: Path) -> tuple[Poly, frozenset[str]]:
+    """Return one side of a relation, and the names of its formula."""
+    formula = formula_at(measures, value, (), path)
+    if formula is None:
+        return constant(measures.numerals.number(value, path)), frozenset()
+    inputs = {one: input_of(measures, one, {}, path) for one in sorted(formula.names)}
+    for one, given in inputs.items():
+        if given.rate:
+            raise InvalidParameter(path, f'have places, angles and the time alone, unlike "{one}"')
+    forms = {one: given.form for one, given in inputs.items()}
+    return FormulaRows(measures, name, path, forms).of(formula.root), formula.names

@@ -1,0 +1,115 @@
+"""Relations between places and angles by formula, against closed forms and against tracks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.errors import InvalidParameter, PlacesDisagree
+from core.multibody.answer import SceneSolution
+from core.multibody.language.reading import scene_from
+from core.multibody.solve import solve_scene
+
+TIMES = np.array([0.0, 0.3, 1.0])
+ALL = ("accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "work-in-time")
+
+
+def answer(description: dict[str, Any], outputs: Sequence[str] = ALL) -> SceneSolution:
+    return solve_scene(scene_from(description), TIMES, outputs)
+
+
+def columns(found: SceneSolution, *names: str) -> list[Any]:
+    assert found.trajectory is not None
+    return [found.trajectory.columns[name].values for name in names]
+
+
+def relation(of: str, equals: Any = 0) -> dict[str, Any]:
+    return {"kind": "relation", "name": "r", "of": of, "equals": equals}
+
+
+def wheel(inertia: Any, x: Any) -> dict[str, Any]:
+    return {"mass": 1, "inertia": inertia, "at": [x, 0]}
+
+
+def point(x: Any, y: Any, *connections: dict[str, Any]) -> dict[str, Any]:
+    return {"gravity": [0, -10], "bodies": {"p": {"mass": 1, "at": [x, y]}}, "connections": list(connections)}
+
+
+def test_two_gears() -> None:
+    """2 a + 5 b = 0 with the force F: 2 a'' = 7 + 2 F and 3 b'' = 5 F, so that F = -7/(2 + 25/3)."""
+    pins = [{"kind": "pin", "a": name, "b": [x, 0]} for name, x in (("a", 0), ("b", 5))]
+    torque = {"kind": "torque", "body": "a", "torque": 7}
+    gears = {"gravity": [0, 0], "bodies": {"a": wheel(2, 0), "b": wheel(3, 5)},
+             "connections": [*pins, relation("2*a.angle + 5*b.angle"), torque]}  # fmt: skip
+    found = answer(gears)
+    a, b, force = columns(found, "a.angle", "b.angle", "r.force")
+    pull = -7 / (2 + 25 / 3)
+    np.testing.assert_allclose(force, pull, rtol=1e-15)
+    np.testing.assert_allclose(a, (7 + 2 * pull) / 4 * TIMES**2, rtol=1e-15)
+    np.testing.assert_allclose(b, 5 * pull / 6 * TIMES**2, rtol=1e-15)
+    assert found.model.name == "constant acceleration"
+    assert found.forces is not None
+    assert found.forces["r.force"].unit == "N m"
+
+
+def test_a_rack_and_its_pinion() -> None:
+    """y = a/2 with an inertia of 2 behind it: y'' = -10/(1 + 2/(1/2)^2)."""
+    pinion = {"kind": "pin", "a": "w", "b": [0, 0]}
+    guide = {"kind": "slider", "a": "p", "b": [1, 0], "slope": {"degrees": 90}}
+    rack = point(1, 0, pinion, guide, relation("p.y", "0.5*w.angle"))
+    rack["bodies"]["w"] = wheel(2, 0)
+    place, force = columns(answer(rack), "p.position", "r.force")
+    np.testing.assert_allclose(place[:, 1], -10 / 9 / 2 * TIMES**2, rtol=1e-15)
+    np.testing.assert_allclose(force, 10 - 10 / 9, rtol=1e-15)
+
+
+def test_a_parabola_is_the_track() -> None:
+    track = {"kind": "track", "name": "r", "place": "p", "on": {"at": [0, 0], "curvature": 2}}
+    own, other = (answer(point(1, 1, one)) for one in (relation("p.y", "p.x^2"), track))
+    np.testing.assert_allclose(*(columns(one, "p.position")[0] for one in (own, other)), atol=4e-15)
+
+
+def test_a_relation_with_the_time_drives() -> None:
+    """On a line that turns with the angle 2 t about the origin from rest along it: r'' = 4 r - 10 sin(2 t)."""
+    line = point(1, 0, relation("p.y*cos(2*t)", "p.x*sin(2*t)"))
+    line["bodies"]["p"]["velocity"] = [0, 2]
+    place, work = columns(answer(line), "p.position", "r.work")
+    # r = A exp(2 t) + B exp(-2 t) + (10/8) sin(2 t), with r = 1 and r' = 0 at the start.
+    grown, fallen = (1 - 1.25) / 2, (1 + 1.25) / 2
+    radius = grown * np.exp(2 * TIMES) + fallen * np.exp(-2 * TIMES) + 1.25 * np.sin(2 * TIMES)
+    rate = 2 * grown * np.exp(2 * TIMES) - 2 * fallen * np.exp(-2 * TIMES) + 2.5 * np.cos(2 * TIMES)
+    exact = radius[:, None] * np.stack([np.cos(2 * TIMES), np.sin(2 * TIMES)], axis=1)
+    np.testing.assert_allclose(place, exact, atol=1e-14)
+    energy = (rate**2 + 4 * radius**2) / 2 + 10 * exact[:, 1]
+    np.testing.assert_allclose(work, energy - 2, atol=1e-13)
+
+
+def test_places_that_are_rounded_are_put_onto_a_relation() -> None:
+    found = answer(point(0.3, "0.0270000001", relation("p.y", "p.x^3")), ("trajectory",))
+    (place,) = columns(found, "p.position")
+    np.testing.assert_allclose(place[:, 1], place[:, 0] ** 3, atol=1e-16)
+
+
+@pytest.mark.parametrize(
+    ("of", "equals", "rule", "pointer"),
+    [
+        ("p.y", "sin(p.x)", "whole powers and square roots alone", "equals"),
+        ("p.y", "p.vx", 'unlike "p.vx"', "equals"),
+        ("p.z", 0, 'unlike "p.z"', "of"),
+        ("3*t", 0, "name places or angles", "of"),
+    ],
+)
+def test_what_no_relation_can_say_is_refused(of: str, equals: Any, rule: str, pointer: str) -> None:
+    with pytest.raises(InvalidParameter, match=rule) as refused:
+        answer(point(1, 0, relation(of, equals)))
+    assert tuple(refused.value.path) == ("connections", 0, pointer)
+
+
+def test_places_that_do_not_fit_a_relation_are_refused_with_the_nearest() -> None:
+    with pytest.raises(PlacesDisagree, match=r"be 0\.5") as refused:
+        answer(point(0, "0.5", relation("p.y", "p.x")))
+    assert refused.value.remedy is not None
+    assert "[0.25, 0.25]" in refused.value.remedy
