@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from flint import arb
 
 from core.balls import precision
 from core.errors import AccuracyUnreachable, BudgetExceeded
@@ -73,6 +74,19 @@ def test_every_branch_keeps_energy_and_angular_momentum(moments, omega):
         assert one == pytest.approx(momentum[1], abs=2e-14)
     energy = (np.array(moments) * rates**2).sum(axis=1)
     assert energy == pytest.approx(energy[1], rel=1e-14)
+
+
+def test_states_in_balls_are_those_in_pairs_also_of_rates_in_a_principal_plane():
+    for omega in ([1, 1, 0], [0.5, 1, 2]):
+        body = {"mass": 1, "moments": [1, 2, 3], "at": [0, 0, 0], "angular_velocity": omega}
+        torque = {"kind": "torque", "body": "b", "torque": [0, 0, 0]}
+        scene = read({"gravity": [0, 0, 0], "bodies": {"b": body}, "connections": [torque]})
+        with precision(BITS):
+            motion = next(one for _, one in modelled(scene).moving if isinstance(one, FreeBody))
+            (state,) = motion.in_balls([arb(1.5)])
+            found = motion.states(np.array([1.5]))
+        assert [float(x) for x in state.q] == pytest.approx(found.q[0, :, 0], abs=1e-15)
+        assert [float(x) for x in state.v] == pytest.approx(found.v[0, :, 0], abs=1e-15)
 
 
 def test_any_time_is_answered_alike():
