@@ -137,6 +137,10 @@ def _two(power: int) -> Ball:
 AT_ORIGIN = -32
 """Exponent of two of the share of its way within which a place is at the origin: events leave far less of it."""
 
+ROUNDED = 60
+"""Bits by which an acceleration is less than that of the loads where it is what rounding leaves of their balance: more
+than doubles hold, and half of what pairs do."""
+
 
 def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     """Return units in which coordinates, rates and masses are of the order of one."""
@@ -147,6 +151,12 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     spins = [exponent(x) for i, x in enumerate(acceleration) if table.units[i] in ("1", "rad")]
     size, rate, pull = _most(sizes), _most(rates), _most(pulls)
     turn, spin = _most(turns), _most(spins)
+    heaviest = _most([exponent(x) for x in table.load.values()])
+    inert = _most([exponent(x) for (i, j), x in table.mass.items() if i == j])
+    loaded = heaviest is not None and inert is not None
+    if pull is not None and loaded and pull < (heaviest or 0) - (inert or 0) - ROUNDED:
+        # What is left of loads that are balanced tells no scale.
+        pull = None
     times = []
     if turn is not None:
         times.append(-turn)

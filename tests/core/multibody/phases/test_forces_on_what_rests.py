@@ -111,6 +111,15 @@ def test_what_moves_pushes_what_rests() -> None:
     assert found.events[0].time == pytest.approx(asin(5 / 8) / 2, rel=1e-14)
 
 
+def test_what_goes_on_evenly_pushes_what_rests() -> None:
+    """The force is 2 t, of where another body is: what begins to slip has an acceleration of rounding alone."""
+    scene = pushed(["2*(c.x - 5)", 0], ROUGH, FLOOR | {"name": "ice", "place": "c"})
+    scene["bodies"]["c"] = {"mass": 1, "at": [5, 0], "velocity": [1, 0]}
+    found = answer(scene, 4.0)
+    assert [event.kind for event in found.events] == ["slip"]
+    placed(found, [1.125, 0])
+
+
 def test_forces_of_what_is_held_are_searched() -> None:
     """A weld holds a rod under a torque and a force, whose moment about the weld is cos(3 t)/2."""
     rod = {"mass": 1, "inertia": "1/12", "at": [0, "-1/2"], "places": {"h": [0, "1/2"]}}
