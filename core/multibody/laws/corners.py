@@ -1,4 +1,4 @@
-"""Where a step of a series ends before a corner of a formula: a zero of a length, or of what a sign depends on."""
+"""Where a step of a series ends before a corner of a formula: a zero of a length or root, or of what a sign sees."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import Pair
-from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, SIGN, PackedLaws, leading_power
+from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, POWER, ROOT, SIGN, PackedLaws, leading_power
 
 PROBES, HALVINGS = 16, 54
 """Times in a step at which a corner is looked for, and halvings of the time between two: those of doubles."""
@@ -144,8 +144,8 @@ def _resolved(values: Floats, part: int, h: float) -> float:
 def until_corner(laws: PackedLaws, values: Floats, h: float, course: Floats, since: float) -> float:
     """Return the part of a step up to the first corner of a formula; else the step.
 
-    A length has a corner where it is zero, and so has what depends on a sign. It is not a number where a product begins
-    beyond the order of the series, which then says nothing of it, or where a sign changes back at once.
+    A length or root has a corner where it is zero, and so has what depends on a sign. It is not a number where a
+    product begins beyond the order of the series, which then says nothing of it, or where a sign changes back at once.
 
     Of a sign that changes at the end of that part there is a mark in `course`: the sign that follows.
 
@@ -174,6 +174,9 @@ def until_corner(laws: PackedLaws, values: Floats, h: float, course: Floats, sin
             if abs(found) > NEARBY * max(abs(h), abs(since)):
                 # The rest of the way is short, and its end known to as many digits of it.
                 found, next_mark = found * (1.0 - SHORT_OF), 0.0
+        elif code in (ROOT, POWER):
+            # Beyond a double zero of its argument the series is that of the other branch, which is negative.
+            found, next_mark = _first_change(values, o, 1.0, h), 0.0
         elif code == LENGTH:
             part, next_mark = _along_a_line(values, operation), 0.0
             leading = leading_power(values, operation, values.shape[1] - 3)

@@ -185,6 +185,8 @@ class _Writer:
             return self.tape.input(self.law.inputs[node.text])
         if node.kind == "^":
             return self._power(node)
+        if node.kind == "sqrt" and (vector := _squared(node.inner[0])):
+            return self._function(LENGTH, [self.of(part) for part in vector])
         values = [self.of(inner) for inner in node.inner]
         return self._switch(node, values) if node.kind in SWITCHING else self._function(node.kind, values)
 
@@ -276,6 +278,16 @@ class _Writer:
         half = self._product(value, power // 2)
         square = tape.add(Op.MULTIPLY, half, half)
         return square if power % 2 == 0 else tape.add(Op.MULTIPLY, square, value)
+
+
+def _squared(node: Node) -> list[Node]:
+    """Return the components of a vector of which a formula is the square, as of a speed; nothing where it is none."""
+    if node.kind == "+":
+        first, last = (_squared(inner) for inner in node.inner)
+        return first + last if first and last and len(first + last) <= 3 else []
+    if node.kind == "^":
+        return [node.inner[0]] if node.inner[1] == Node("number", "2") else []
+    return [node.inner[0]] if node.kind == "*" and node.inner[0] == node.inner[1] else []
 
 
 def _parts(value: Ball) -> tuple[object, object]:

@@ -99,6 +99,21 @@ def test_a_tilted_throw_with_quadratic_drag_comes_back() -> None:
     compared(found, "p.velocity", lambda t: [mp.mpf(6) / 10 * rate(t), mp.mpf(8) / 10 * rate(t)])
 
 
+def test_a_speed_that_is_written_out_is_the_speed() -> None:
+    force, written = (
+        answer(scene([f"-{speed}*vx/10", f"-{speed}*vy/10"], [-6, -8], velocity=[6, 8]), [0.0, 0.8, 2.0]).trajectory
+        for speed in ("speed", "sqrt(vx^2 + vy*vy)")
+    )
+    assert force is not None
+    assert written is not None
+    np.testing.assert_array_equal(*(one.columns["p.velocity"].values for one in (force, written)))
+
+
+def test_a_root_does_not_go_on_with_its_other_branch() -> None:
+    with pytest.raises(AccuracyUnreachable):
+        answer(scene([0, "-0.1*(vy^2)^0.5*vy"], [0, -10], velocity=[0, 10]), [0.0, 0.5, 2.0])
+
+
 def test_a_pendulum_swings_with_quadratic_drag() -> None:
     """Between the turns E = cos(a) and w^2 are related by a linear equation: d(w^2)/da = -2 g sin(a) -+ 2 c w^2."""
     rod = {"kind": "rod", "a": "p", "b": [0, 0]}
