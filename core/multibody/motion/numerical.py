@@ -12,7 +12,7 @@ from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
 from core.multibody.motion.motion import Motion, States
-from core.multibody.motion.series import DONE, FULL, LOST, advance, placed, sampled
+from core.multibody.motion.series import DONE, FULL, LOST, STUCK, advance, placed, sampled
 from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
 from core.multibody.table.table import Table
 
@@ -242,7 +242,7 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
     BudgetExceeded
         Where more steps would be needed than one part may take.
     AccuracyUnreachable
-        Where the motion leaves the range of doubles.
+        Where the motion leaves the range of doubles, or a formula does not say how it goes on.
     """
     order, tolerance = {
         "doubles": (ORDER, TOLERANCE),
@@ -256,7 +256,18 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
     take = advance if kind == "doubles" else advance_pairs
 
     def steps(clock: Floats, starts: Floats, series: Floats) -> tuple[int, int]:
-        return take(arrays, q, v, clock, end, tolerance, starts, series)
+        ended, count = take(arrays, q, v, clock, end, tolerance, starts, series)
+        if ended == STUCK:
+            time = clock[0] * two_to(units.time)
+            raise AccuracyUnreachable(
+                None,
+                np.inf,
+                f"a formula does not say how the motion goes on from {time:.10g} s: either side of the zero on which "
+                "it depends leads back to it, or it begins with a power of time beyond those of the series",
+                path=("times",),
+                remedy="ask for earlier times, or describe friction that holds what is at rest by a contact",
+            )
+        return ended, count
 
     return run_by(steps, start, shape, max(16, _CHUNK // (16 * len(q) * (order + 1))))
 
