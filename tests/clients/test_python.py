@@ -365,3 +365,15 @@ def test_a_type_checker_knows_questions_and_answers(tmp_path: Path) -> None:
     for number, fault in enumerate(TYPED.values(), len(head) + 1):
         found = re.findall(rf"^script.py:{number}: error: .*\[([\w-]+)\]$", done.stdout, re.MULTILINE)
         assert set(found) == (set() if fault is None else {fault}), done.stdout
+
+
+def test_it_is_imported_in_a_checkout_in_which_nothing_was_built(tmp_path: Path) -> None:
+    own = ROOT / "clients" / "python"
+    made = shutil.ignore_patterns("documents.py", "operations.py", "__pycache__")
+    shutil.copytree(own, tmp_path / "python", ignore=made)
+    shutil.copy(ROOT / "docs" / "openapi.json", tmp_path / "python")
+    command = [sys.executable, "-c", "from polhode_client import Client; print(Client.precession.__name__)"]
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": str(tmp_path / "python")}
+    )
+    assert done.stdout == "precession\n", done.stderr
