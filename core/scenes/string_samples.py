@@ -128,7 +128,9 @@ class ShaftMotion(NamedSceneMotion):
             errors = {
                 "positions": dx + drift * elapsed,
                 "velocities": dv + drift,
-                "spins": (dr + drift + UNIT_ROUNDOFF * np.abs(r)) / radii,
+                # Of a large radius the quotient may be below the doubles.
+                "spins": (dr + drift + UNIT_ROUNDOFF * np.abs(r)) / radii
+                + SMALLEST * ((r / radii == 0.0) & (r != 0.0)),
                 "unwound": ds + drift * elapsed,
             }
         notices: tuple[Notice, ...] = ()

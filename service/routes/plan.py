@@ -25,7 +25,7 @@ from service.responses.json_stream import composed
 from service.routes.described_answer import ScenePart
 from service.routes.step_counts import EXPLICIT, least_evaluations
 from service.routing import Answer, ExpectedDuration, PostRoute, never
-from service.schemas import DecimalString, Envelope, Ratio, Request, View, ends_of, in_closed_form
+from service.schemas import DecimalString, Envelope, Ratio, Request, View, ends_of, in_closed_form, sample_count
 from service.schemas import Fault as FaultView
 
 WITHIN = "/request"
@@ -239,13 +239,15 @@ def _evaluations(request: Any, budget: Budget) -> int | None:
     Raises
     ------
     BudgetExceeded
-        For more than the budget.
+        For more evaluations or samples than the budget.
     """
     method = getattr(request, "method", None)
     if in_closed_form(method) or request.times is None:
         return 0 if getattr(request, "methods", None) is None else None
     if not isinstance(method, FixedStep):
         return None
+    # Steps between samples are counted from all of them.
+    sample_count(request.times, budget)
     count = least_evaluations(method, request.times)
     if count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"

@@ -67,8 +67,7 @@ class Sums:
 
     def __init__(self, columns: ColumnsInPhases, times: Floats, how: How) -> None:
         self.motion, self.times, self.how = columns.motion, times, how
-        pieces = stretches(columns.motion, float(times.max(initial=0.0)), finer=columns.finer)
-        self.pieces = [piece for piece in pieces if piece.length > 0.0 or not piece.number]
+        self.pieces = list(stretches(columns.motion, float(times.max(initial=0.0)), finer=columns.finer))
         # As of phases: at the double that an event has a time is in the stretch that begins.
         starts = [nearest(piece.start) for piece in self.pieces]
         self.where = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
