@@ -134,6 +134,11 @@ BY_METHOD = {
     "times": [0.0, 0.1],
     "method": {"kind": "explicit-euler", "step": 0.1},
 }
+SEARCHED = {
+    **scene_catalogue()["double-pendulum"].question,
+    "times": [0.1],
+    "outputs": ["trajectory", {"extremes": "one.velocity.x"}],
+}
 
 DESCRIBED_SCENES = (
     PostRoute(
@@ -146,7 +151,7 @@ DESCRIBED_SCENES = (
         solved,
         # A heavy body about a point has kernels of its own, one of them for its start alone; so have a named method and
         # a slip that turns.
-        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, BY_METHOD, TURNING_SLIP),
+        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, BY_METHOD, SEARCHED, TURNING_SLIP),
         description=DESCRIPTION,
         representations={SVG: draw_described},
     ),
