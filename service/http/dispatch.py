@@ -17,7 +17,15 @@ from service.execution.response_cache import ResponseCache
 from service.http.deprecation import DEPRECATED
 from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.keys import Keys
-from service.http.limits import Bodies, ClientGone, negotiated, parameters_of, refuse_parameters, require_readable
+from service.http.limits import (
+    Bodies,
+    ClientGone,
+    idempotency_key,
+    negotiated,
+    parameters_of,
+    refuse_parameters,
+    require_readable,
+)
 from service.http.request_context import VARY, RequestContext
 from service.observability.failed_checks import FailedChecks
 from service.observability.logs import LOG
@@ -133,6 +141,7 @@ class Dispatcher:
         if self._keys is not None:
             context.key = self._keys.admit(headers, context.address)
         npz = require_readable(headers)
+        idempotency_key(headers)
         media = None
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":

@@ -22,6 +22,9 @@ LONGEST_ACCEPT = 1_024
 LONGEST_PARAMETER = 40
 """Letters of an unknown parameter's name that are repeated in its refusal."""
 
+LONGEST_KEY = 255
+"""Bytes of an Idempotency-Key; the services that brought the header into use allow as many."""
+
 # Java sends ".2", which RFC 9110 does not have.
 _WEIGHT = re.compile(r"0(\.\d{0,3})?|\.\d{1,3}|1(\.0{0,3})?")
 _CLOSE = ("Connection", "close")
@@ -57,6 +60,15 @@ def require_readable(headers: Headers) -> bool:
     if headers.get(b"transfer-encoding", b"chunked").lower() != b"chunked":
         raise Refusal("unsupported-transfer-coding", "chunked is the only transfer coding", headers=(_CLOSE,))
     return declared == b"application/x-npz"
+
+
+def idempotency_key(headers: Headers) -> bytes:
+    """Return what makes a repeated request the same one, empty for none; refuse one that is too long."""
+    key = headers.get(b"idempotency-key", b"")
+    if len(key) > LONGEST_KEY:
+        fault = Fault("Idempotency-Key", f"must have at most {LONGEST_KEY} bytes")
+        raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
+    return key
 
 
 def negotiated(accept: bytes, offered: Sequence[str]) -> str:

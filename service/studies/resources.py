@@ -12,7 +12,7 @@ import orjson
 from core.errors import BudgetExceeded
 from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
-from service.http.limits import negotiated, parameters_of, refuse_parameters
+from service.http.limits import idempotency_key, negotiated, parameters_of, refuse_parameters
 from service.http.request_context import RequestContext
 from service.problems import Fault, Refusal, headline
 from service.responses import npz as archive
@@ -32,9 +32,6 @@ from service.studies.supervisor import Supervisor
 
 MOST_LISTED = 200
 """Studies of a page of the list."""
-
-LONGEST_KEY = 255
-"""Bytes of an Idempotency-Key; the services that brought the header into use allow as many."""
 
 LONGEST_LIST = 10**9
 """The last study that a page of the list may begin with: more than a database holds."""
@@ -150,10 +147,7 @@ class Studies:
         limits = self._settings
         most = Quotas(limits.max_studies, limits.max_address_studies, limits.max_studies_bytes)
         owner = Owner(_owner(context), "" if context.key is not None else str(context.client))
-        once = context.headers.get(b"idempotency-key", b"")
-        if len(once) > LONGEST_KEY:
-            fault = Fault("Idempotency-Key", f"must have at most {LONGEST_KEY} bytes")
-            raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
+        once = idempotency_key(context.headers)
         identity = identity_of(owner, once) if once else ""
         if not identity or not await self._in_thread(lambda: self._store.repeats(identity, body, known["path"])):
             if context.key is not None:
