@@ -53,7 +53,8 @@ def answered_by_parts(
         key=lambda event: event.time,
     )
     ending = [solution for solution in solutions if solution.ended is not None and solution.ended.time <= span.end]
-    trajectory = joined_trajectory(found, request.times, events)
+    ended = ending[0].ended if ending else None
+    trajectory = joined_trajectory(found, request.times, events, ended)
     if trajectory is not None and request.digits is not None:
         trajectory = shortened(trajectory, request.digits)
     return SceneSolution(
@@ -65,7 +66,7 @@ def answered_by_parts(
         *period_of(solutions),
         _equilibria(scene, request, answered),
         tuple(events),
-        ending[0].ended if ending else None,
+        ended,
         *joined_searches(solutions, request.outputs, parts),
         phases=joined_phases(solutions, span.end),
         problem=ending[0].problem if ending else None,

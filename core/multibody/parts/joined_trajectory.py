@@ -22,7 +22,9 @@ _ROUNDING = 2.0**-53
 """Relative error of a sum of two doubles."""
 
 
-def joined_trajectory(answers: Sequence[PartAnswer], times: Floats, events: Sequence[MotionEvent]) -> Trajectory | None:
+def joined_trajectory(
+    answers: Sequence[PartAnswer], times: Floats, events: Sequence[MotionEvent], ended: MotionEvent | None
+) -> Trajectory | None:
     """Return the samples of a scene at those of the times that all parts reach; None without times."""
     found = [(one.solution.trajectory, one.rows) for one in answers]
     own = [(trajectory, rows) for trajectory, rows in found if trajectory is not None]
@@ -46,7 +48,7 @@ def joined_trajectory(answers: Sequence[PartAnswer], times: Floats, events: Sequ
         None,
         own[0][0].method,
         _work([trajectory.work for trajectory, _ in own], len(rows)),
-        ended=next((event.kind for event in events if event.time >= 0.0), HORIZON),
+        ended=HORIZON if ended is None else ended.kind,
         rows=rows,
         events=events,
         warnings=tuple(dict.fromkeys(notice for trajectory, _ in own for notice in trajectory.warnings)),

@@ -82,6 +82,13 @@ def test_columns_of_the_whole_scene_are_the_sums_of_those_of_its_parts() -> None
         assert found[name].error >= sum(part[name].error for part in alone)
 
 
+def test_a_touch_of_one_part_does_not_end_the_motion() -> None:
+    motion = solve_scene(scene(PENDULUM, BALL), [0.0, 0.8]).trajectory
+    assert motion is not None
+    assert [event.kind for event in motion.events] == ["touch"]
+    assert motion.ended == "horizon"
+
+
 def test_touches_at_one_instant_in_parts_that_share_nothing() -> None:
     """Two equal pendulums, each against a wall below its pivot: a quarter of a period, by the elliptic integral."""
     bodies = {name: {"mass": 1, "at": [x + 0.6, -0.8]} for name, x in (("a", 0), ("b", 5))}
