@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import Pair
 from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, POWER, ROOT, SIGN, PackedLaws, leading_power
 
 PROBES, HALVINGS = 16, 54
-"""Times in a step at which a corner is looked for, and halvings of the time between two: those of doubles."""
+"""Times in a step at which a corner is sought first, and halvings of the time between two: those of doubles."""
+
+DEEPEST = 40
+"""Halvings of a step down to which a sign is sought: what changes twice within less is below the resolution of time."""
+
+ROUNDED = 2.0**-47
+"""Share of its largest coefficient to which a series is known in doubles after its terms are summed up."""
 
 SHORT_OF, NEARBY = 2.0**-46, 2.0**-42
 """Share by which a step ends before the change of a sign, and share of a step from which on a change is that near."""
@@ -61,8 +69,35 @@ def _begins_later(values: Floats, o: int, a: int, b: int) -> bool:
 
 
 @kernel()
-def _first_change(values: Floats, part: int, sign: float, h: float) -> float:
-    """Return the first time in a step at which a series no longer has a sign; beyond the step where it keeps it."""
+def _bernstein(values: Floats, part: int, sign: float, h: float) -> Floats:
+    """Return the coefficients of a series on a step in Bernstein's form, between which its values lie."""
+    n = values.shape[1] - 1
+    found = np.empty(n + 1)
+    scale, ways = sign, 1.0
+    for k in range(n + 1):
+        found[k] = values[part, k, 0] * scale / ways
+        scale *= h
+        ways *= (n - k) / (k + 1.0)
+    for i in range(1, n + 1):
+        for j in range(n, i - 1, -1):
+            found[j] += found[j - 1]
+    return found
+
+
+@kernel()
+def _split(left: Floats, right: Floats) -> None:
+    """Split coefficients in `left` into those of the two halves (de Casteljau)."""
+    n = len(left) - 1
+    right[n] = left[n]
+    for i in range(1, n + 1):
+        for j in range(n, i - 1, -1):
+            left[j] = 0.5 * (left[j - 1] + left[j])
+        right[n - i] = left[n]
+
+
+@kernel()
+def _first_seen(values: Floats, part: int, sign: float, h: float) -> float:
+    """Return the first of some times in a step up to which a series has changed its sign, at its zero."""
     low = 0.0
     for j in range(1, PROBES + 1):
         high = h * j / PROBES
@@ -76,6 +111,55 @@ def _first_change(values: Floats, part: int, sign: float, h: float) -> float:
             return high
         low = high
     return 2.0 * h
+
+
+@kernel()
+def _first_proven(values: Floats, part: int, sign: float, h: float) -> float:
+    """Return the first time in a step at which a series no longer has a sign; beyond the step where it keeps it.
+
+    What is shallower than its rounding is not seen. A series that begins on the other side has passed to this one
+    first: its step began short of a corner.
+    """
+    n = values.shape[1] - 1
+    stack, depths = np.empty((DEEPEST + 2, n + 1)), np.zeros(DEEPEST + 2, dtype=np.int64)
+    stack[0] = _bernstein(values, part, sign, h)
+    band = ROUNDED * np.max(np.abs(stack[0]))
+    if not math.isfinite(band):
+        return 2.0 * h
+    begun = stack[0, 0] >= -band
+    top, low = 0, 0.0
+    while top >= 0:
+        own, width = stack[top], h * 0.5 ** depths[top]
+        on_one_side = np.min(own) >= -band if begun else np.max(own) < 0.0
+        if not on_one_side and begun and own[n] < -band:
+            high = low + width
+            for _ in range(HALVINGS):
+                middle = 0.5 * (low + high)
+                if sign * _value(values, part, middle) < 0.0:
+                    high = middle
+                else:
+                    low = middle
+            return float(high)
+        if on_one_side or depths[top] == DEEPEST:
+            begun = begun or own[n] >= 0.0
+            low += width
+            top -= 1
+            continue
+        depths[top] += 1
+        stack[top + 1], depths[top + 1] = own, depths[top]
+        _split(stack[top + 1], stack[top])
+        top += 1
+    return 2.0 * h
+
+
+@kernel()
+def _first_change(values: Floats, part: int, sign: float, h: float) -> float:
+    """Return the first time in a step at which a series no longer has a sign; beyond the step where it keeps it.
+
+    Two changes may lie between the times at which it is seen.
+    """
+    seen, proven = _first_seen(values, part, sign, h), _first_proven(values, part, sign, h)
+    return proven if abs(proven) < abs(seen) - TOGETHER * abs(h) else seen
 
 
 @kernel()

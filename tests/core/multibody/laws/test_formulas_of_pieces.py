@@ -190,3 +190,14 @@ def test_a_force_that_overcomes_a_sign_starts_a_body() -> None:
 
 def test_a_sign_of_what_stays_zero_is_zero() -> None:
     compared(answer(scene(["1 + sign(y)", 0]), [0.0, 1.0]), "p.velocity", lambda t: [t, 0])
+
+
+@pytest.mark.parametrize("half", ["1/10", "1/100", "1/1000"])
+@pytest.mark.parametrize("of", ["t", "x"])
+def test_a_force_that_acts_for_a_short_time_is_not_passed_over(half: str, of: str) -> None:
+    """Within half a width of t = 1/2 or x = 1/2 it gives a momentum, or does a work, of 1/10."""
+    force = f"if(({half})^2 - ({of} - 1/2)^2, 1/(20*({half})), 0)"
+    found = answer(scene([force, 0], velocity=[1, 0]), [1, 2])
+    right = 1.1 if of == "t" else float(np.sqrt(1.2))
+    assert found.trajectory is not None
+    assert np.max(np.abs(found.trajectory.columns["p.velocity"].values[:, 0] - right)) < 1e-14
