@@ -11,8 +11,9 @@ from core.compiled import kernel
 from core.double_double import Pair
 from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, POWER, ROOT, SIGN, PackedLaws, leading_power
 
-PROBES, HALVINGS = 16, 54
-"""Times in a step at which a corner is sought first, and halvings of the time between two: those of doubles."""
+HALVINGS = 128
+"""Halvings of a time that is short of a zero and one that is beyond it, down to neighbouring doubles: a zero may be as
+short a part of a step as rounding."""
 
 DEEPEST = 40
 """Halvings of a step down to which a sign is sought: what changes twice within less is below the resolution of time."""
@@ -96,29 +97,22 @@ def _split(left: Floats, right: Floats) -> None:
 
 
 @kernel()
-def _first_seen(values: Floats, part: int, sign: float, h: float) -> float:
-    """Return the first of some times in a step up to which a series has changed its sign, at its zero."""
-    low = 0.0
-    for j in range(1, PROBES + 1):
-        high = h * j / PROBES
-        if sign * _value(values, part, high) < 0.0:
-            for _ in range(HALVINGS):
-                middle = 0.5 * (low + high)
-                if sign * _value(values, part, middle) < 0.0:
-                    high = middle
-                else:
-                    low = middle
-            return high
-        low = high
-    return 2.0 * h
+def _changes(own: Floats, band: float) -> int:
+    """Return how often coefficients change their sign, which is no less often than what they belong to does."""
+    count, before = 0, 0.0
+    for x in own:
+        if abs(x) > band:
+            count += 1 if x * before < 0.0 else 0
+            before = x
+    return count
 
 
 @kernel()
-def _first_proven(values: Floats, part: int, sign: float, h: float) -> float:
-    """Return the first time in a step at which a series no longer has a sign; beyond the step where it keeps it.
+def _first_change(values: Floats, part: int, sign: float, h: float, after: float) -> float:
+    """Return the first time in a step, after some, at which a series no longer has a sign; beyond the step for none.
 
-    What is shallower than its rounding is not seen. A series that begins on the other side has passed to this one
-    first: its step began short of a corner.
+    What is shallower than its rounding is not seen. A series that is on the other side at first has to pass to this one
+    before: a step begins at a corner to rounding.
     """
     n = values.shape[1] - 1
     stack, depths = np.empty((DEEPEST + 2, n + 1)), np.zeros(DEEPEST + 2, dtype=np.int64)
@@ -126,23 +120,28 @@ def _first_proven(values: Floats, part: int, sign: float, h: float) -> float:
     band = ROUNDED * np.max(np.abs(stack[0]))
     if not math.isfinite(band):
         return 2.0 * h
-    begun = stack[0, 0] >= -band
-    top, low = 0, 0.0
+    begun = after == 0.0 and stack[0, 0] >= -band
+    top, low, sure = 0, 0.0, 0.0
     while top >= 0:
-        own, width = stack[top], h * 0.5 ** depths[top]
-        on_one_side = np.min(own) >= -band if begun else np.max(own) < 0.0
-        if not on_one_side and begun and own[n] < -band:
-            high = low + width
-            for _ in range(HALVINGS):
-                middle = 0.5 * (low + high)
-                if sign * _value(values, part, middle) < 0.0:
-                    high = middle
-                else:
-                    low = middle
-            return float(high)
-        if on_one_side or depths[top] == DEEPEST:
-            begun = begun or own[n] >= 0.0
-            low += width
+        own, end = stack[top], low + h * 0.5 ** depths[top]
+        over = abs(end) <= abs(after)
+        across = abs(low) < abs(after) and not over
+        if not over and not across:
+            over = np.min(own) >= -band if begun else np.max(own) < 0.0
+            if begun and own[n] < -band and (_changes(own, band) <= 1 or depths[top] == DEEPEST):
+                for _ in range(HALVINGS):
+                    middle = 0.5 * (sure + end)
+                    if middle in (sure, end):
+                        break
+                    if sign * _value(values, part, middle) < 0.0:
+                        end = middle
+                    else:
+                        sure = middle
+                return float(end)
+        if over or depths[top] == DEEPEST:
+            if own[n] >= 0.0 and abs(end) > abs(after):
+                begun, sure = True, end
+            low = end
             top -= 1
             continue
         depths[top] += 1
@@ -150,16 +149,6 @@ def _first_proven(values: Floats, part: int, sign: float, h: float) -> float:
         _split(stack[top + 1], stack[top])
         top += 1
     return 2.0 * h
-
-
-@kernel()
-def _first_change(values: Floats, part: int, sign: float, h: float) -> float:
-    """Return the first time in a step at which a series no longer has a sign; beyond the step where it keeps it.
-
-    Two changes may lie between the times at which it is seen.
-    """
-    seen, proven = _first_seen(values, part, sign, h), _first_proven(values, part, sign, h)
-    return proven if abs(proven) < abs(seen) - TOGETHER * abs(h) else seen
 
 
 @kernel()
@@ -173,39 +162,35 @@ def _value_and_rate(values: Floats, part: int, time: float) -> Pair:
 
 
 @kernel()
-def _growth(values: Floats, operation: Integers, time: float) -> float:
-    """Return how the square of a vector changes at a time: half its rate."""
-    total = 0.0
-    for part in operation[1:4]:
-        value, rate = _value_and_rate(values, part, time)
-        total += value * rate
-    return total
+def _side(values: Floats, part: int, leading: int, way: float) -> float:
+    """Return the sign that a series takes after its start, where powers below `leading` are rounding."""
+    for k in range(leading, values.shape[1]):
+        if values[part, k, 0] != 0.0:
+            return math.copysign(1.0, values[part, k, 0] * (way if k % 2 == 1 else 1.0))
+    return 0.0
 
 
 @kernel()
 def _first_return(values: Floats, operation: Integers, h: float, leading: int) -> float:
-    """Return the first time in a step at which a vector is zero, to rounding; beyond the step where it is not."""
-    low, way = 0.0, math.copysign(1.0, h)
-    before = -1.0
-    for j in range(1, PROBES + 1):
-        high = h * j / PROBES
-        now = way * _growth(values, operation, high)
-        if before < 0.0 <= now and (j > 1 or (leading == 0 and way * _growth(values, operation, 0.0) < 0.0)):
-            first, last = low, high
-            for _ in range(HALVINGS):
-                middle = 0.5 * (first + last)
-                if way * _growth(values, operation, middle) < 0.0:
-                    first = middle
-                else:
-                    last = middle
+    """Return the first time in a step at which a vector turns back at zero, to rounding; beyond the step for none.
+
+    A component at least changes its sign there.
+    """
+    best = 2.0 * h
+    for part in operation[1:4]:
+        sign, found = _side(values, part, leading, math.copysign(1.0, h)), 0.0
+        while sign != 0.0:
+            found = _first_change(values, part, sign, h, found)
+            if abs(found) >= abs(best):
+                break
             square, change = 0.0, 0.0
-            for part in operation[1:4]:
-                value, rate = _value_and_rate(values, part, last)
+            for other in operation[1:4]:
+                value, rate = _value_and_rate(values, other, found)
                 square, change = square + value**2, change + rate**2
             if square <= AT_ZERO**2 * change:
-                return last
-        low, before = high, now
-    return 2.0 * h
+                best = found
+            sign = -sign
+    return best
 
 
 @kernel()
@@ -254,20 +239,20 @@ def until_corner(laws: PackedLaws, values: Floats, h: float, course: Floats, sin
                 continue
             if mark != 0.0 and _turns_back(values, operation[1], sign, course[0]):
                 return math.nan
-            found, next_mark = _first_change(values, operation[1], sign, h), -sign
+            found, next_mark = _first_change(values, operation[1], sign, h, 0.0), -sign
             if abs(found) > NEARBY * max(abs(h), abs(since)):
                 # The rest of the way is short, and its end known to as many digits of it.
                 found, next_mark = found * (1.0 - SHORT_OF), 0.0
         elif code in (ROOT, POWER):
             # Beyond a double zero of its argument the series is that of the other branch, which is negative.
-            found, next_mark = _first_change(values, o, 1.0, h), 0.0
+            found, next_mark = _first_change(values, o, 1.0, h, 0.0), 0.0
         elif code == LENGTH:
             part, next_mark = _along_a_line(values, operation), 0.0
             leading = leading_power(values, operation, values.shape[1] - 3)
             if part < 0:
                 found = _first_return(values, operation, h, leading)
             else:
-                found = _first_change(values, part, values[o, leading, 0] * values[part, leading, 0], h)
+                found = _first_change(values, part, values[o, leading, 0] * values[part, leading, 0], h, 0.0)
         else:
             continue
         if abs(found) > abs(h) or abs(found) > abs(best) + TOGETHER * abs(h):

@@ -201,3 +201,33 @@ def test_a_force_that_acts_for_a_short_time_is_not_passed_over(half: str, of: st
     right = 1.1 if of == "t" else float(np.sqrt(1.2))
     assert found.trajectory is not None
     assert np.max(np.abs(found.trajectory.columns["p.velocity"].values[:, 0] - right)) < 1e-14
+
+
+@pytest.mark.parametrize("width", ["1/10", "1/100", "1/1000"])
+def test_of_three_changes_the_first_two_are_not_passed_over_for_the_last(width: str) -> None:
+    """A force of 1/(10 w) within w after t = 1/2, and again from t = 1.9 on."""
+    force = f"if((t - 1/2)*(t - 1/2 - {width})*(t - 1.9), 1/(10*({width})), 0)"
+    found = answer(scene([force, 0], velocity=[1, 0]), [1, 1.8])
+    assert found.trajectory is not None
+    assert np.max(np.abs(found.trajectory.columns["p.velocity"].values[:, 0] - 1.1)) < 1e-14
+
+
+@pytest.mark.parametrize("apart", ["1/10", "1/1000"])
+def test_a_speed_that_is_zero_twice_in_short_turn_has_both_corners(apart: str) -> None:
+    """The velocity is (3, 4)(t - 1/2)(t - 1/2 - d)/5, whose size drives another body."""
+    description = scene(
+        [f"3/5*(2*t - 1 - {apart})", f"4/5*(2*t - 1 - {apart})"],
+        velocity=[f"3/10*(1/2 + {apart})", f"2/5*(1/2 + {apart})"],
+    )
+    description["bodies"]["q"] = {"mass": 1, "at": [9, 0]}
+    push = {"kind": "force", "name": "g", "place": "q", "force": ["sqrt(p.vx^2 + p.vy^2)", 0]}
+    description["connections"].append(push)
+    found = answer(description, [1])
+    with mp.workdps(30):
+        d = mp.mpf(1) / 10 if apart == "1/10" else mp.mpf(1) / 1000
+        half = mp.mpf(1) / 2
+        right = mp.quad(lambda t: abs((t - half) * (t - half - d)), [0, half, half + d, 1])
+    assert found.trajectory is not None
+    own = found.trajectory.columns["q.velocity"]
+    assert abs(own.values[0, 0] - float(right)) <= own.error + 2.0**-54
+    assert own.error < 1e-12
