@@ -13,11 +13,14 @@ from core.multibody.audit.laws import Twisting
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, rate
 
 
-@dataclass(frozen=True)
-class DrivenTurn(Twisting):
-    """A turn is given (rad)."""
+class Driven:
+    """What a formula of time drives, by doing work.
 
-    kind: ClassVar[str] = "motor"
+    Attributes
+    ----------
+    drive : FormulaValue
+    """
+
     drive: FormulaValue
 
     def works(self) -> bool:
@@ -28,6 +31,14 @@ class DrivenTurn(Twisting):
     def driven(self) -> float:
         """See `Definition.driven`."""
         return self.drive.quickness(0.0)
+
+
+@dataclass(frozen=True)
+class DrivenTurn(Driven, Twisting):
+    """A turn is given (rad)."""
+
+    kind: ClassVar[str] = "motor"
+    drive: FormulaValue
 
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
@@ -56,19 +67,10 @@ class DrivenRate(Twisting):
 
 
 @dataclass(frozen=True)
-class DrivenRod(RodDefinition):
+class DrivenRod(Driven, RodDefinition):
     """Two places stay at a distance that is given by time; `length` is that at the start (m)."""
 
     drive: FormulaValue
-
-    def works(self) -> bool:
-        """See `Definition.works`."""
-        return True
-
-    @property
-    def driven(self) -> float:
-        """See `Definition.driven`."""
-        return self.drive.quickness(0.0)
 
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
