@@ -8,18 +8,20 @@ import numpy as np
 
 from core.arrays import Floats, Integers
 from core.compiled import kernel
-from core.double_double import Pair
+from core.double_double import Pair, dd_mul, dd_mul_d
+from core.multibody.algebra.bernstein import (
+    FALLING,
+    MOST_SEGMENTS,
+    NEGATIVE,
+    POSITIVE,
+    RISING,
+    decided,
+    zero_between,
+)
 from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, POWER, ROOT, SIGN, PackedLaws, leading_power
 
-HALVINGS = 128
-"""Halvings of a time that is short of a zero and one that is beyond it, down to neighbouring doubles: a zero may be as
-short a part of a step as rounding."""
-
-DEEPEST = 40
-"""Halvings of a step down to which a sign is sought: what changes twice within less is below the resolution of time."""
-
-ROUNDED = 2.0**-47
-"""Share of its largest coefficient to which a series is known in doubles after its terms are summed up."""
+KNOWN = 2.0**-50
+"""Share of its largest term to which a series is known in doubles."""
 
 SHORT_OF, NEARBY = 2.0**-46, 2.0**-42
 """Share by which a step ends before the change of a sign, and share of a step from which on a change is that near."""
@@ -29,15 +31,6 @@ TRUNCATED = 2.0**-56
 
 TOGETHER = 2.0**-48
 """Share of a step within which corners are one: what they are apart by rounding."""
-
-
-@kernel()
-def _value(values: Floats, part: int, time: float) -> float:
-    """Return a series at a time, in doubles."""
-    total = 0.0
-    for k in range(values.shape[1] - 1, -1, -1):
-        total = total * time + values[part, k, 0]
-    return total
 
 
 @kernel()
@@ -70,85 +63,47 @@ def _begins_later(values: Floats, o: int, a: int, b: int) -> bool:
 
 
 @kernel()
-def _bernstein(values: Floats, part: int, sign: float, h: float) -> Floats:
-    """Return the coefficients of a series on a step in Bernstein's form, between which its values lie."""
-    n = values.shape[1] - 1
-    found = np.empty(n + 1)
-    scale, ways = sign, 1.0
-    for k in range(n + 1):
-        found[k] = values[part, k, 0] * scale / ways
-        scale *= h
-        ways *= (n - k) / (k + 1.0)
-    for i in range(1, n + 1):
-        for j in range(n, i - 1, -1):
-            found[j] += found[j - 1]
+def _changes(values: Floats, part: int, sign: float, h: float, times: Floats) -> int:
+    """Fill in the times in a step at which a series, which has a sign, changes it; return how many.
+
+    What is shallower than its rounding is no change. A series that is on the other side at first has to pass to this
+    one before: a step begins at a corner to rounding.
+    """
+    count = values.shape[1]
+    scaled, ph, pl = np.empty((count, 2)), sign, 0.0
+    for k in range(count):
+        scaled[k, 0], scaled[k, 1] = dd_mul(values[part, k, 0], values[part, k, 1], ph, pl)
+        ph, pl = dd_mul_d(ph, pl, h)
+    largest = np.max(np.abs(scaled))
+    if not 0.0 < largest < math.inf:
+        return 0
+    ends, signs, band = np.empty(MOST_SEGMENTS), np.empty(MOST_SEGMENTS, dtype=np.int64), KNOWN * np.abs(scaled[:, 0])
+    band[0] = KNOWN * largest
+    segments = decided(scaled, band, 0.0, count, 1.0, ends, signs, False)
+    found, side, low, since = 0, 0 if signs[0] in (NEGATIVE, RISING) else 1, 0.0, 0.0
+    for segment in range(segments):
+        one = signs[segment]
+        begins = -1 if one in (NEGATIVE, RISING) else 1 if one in (POSITIVE, FALLING) else 0
+        if begins != 0:
+            if side * begins < 0:
+                th, tl = zero_between(scaled, since, low)
+                times[found], found = h * (th + tl), found + 1
+            side = begins if side != 0 or begins > 0 else 0
+            if one in (FALLING, RISING):
+                if side != 0:
+                    th, tl = zero_between(scaled, low, ends[segment])
+                    times[found], found = h * (th + tl), found + 1
+                side = 1 if one == RISING else -1
+            since = ends[segment]
+        low = ends[segment]
     return found
 
 
 @kernel()
-def _split(left: Floats, right: Floats) -> None:
-    """Split coefficients in `left` into those of the two halves (de Casteljau)."""
-    n = len(left) - 1
-    right[n] = left[n]
-    for i in range(1, n + 1):
-        for j in range(n, i - 1, -1):
-            left[j] = 0.5 * (left[j - 1] + left[j])
-        right[n - i] = left[n]
-
-
-@kernel()
-def _changes(own: Floats, band: float) -> int:
-    """Return how often coefficients change their sign, which is no less often than what they belong to does."""
-    count, before = 0, 0.0
-    for x in own:
-        if abs(x) > band:
-            count += 1 if x * before < 0.0 else 0
-            before = x
-    return count
-
-
-@kernel()
-def _first_change(values: Floats, part: int, sign: float, h: float, after: float) -> float:
-    """Return the first time in a step, after some, at which a series no longer has a sign; beyond the step for none.
-
-    What is shallower than its rounding is not seen. A series that is on the other side at first has to pass to this one
-    before: a step begins at a corner to rounding.
-    """
-    n = values.shape[1] - 1
-    stack, depths = np.empty((DEEPEST + 2, n + 1)), np.zeros(DEEPEST + 2, dtype=np.int64)
-    stack[0] = _bernstein(values, part, sign, h)
-    band = ROUNDED * np.max(np.abs(stack[0]))
-    if not math.isfinite(band):
-        return 2.0 * h
-    begun = after == 0.0 and stack[0, 0] >= -band
-    top, low, sure = 0, 0.0, 0.0
-    while top >= 0:
-        own, end = stack[top], low + h * 0.5 ** depths[top]
-        over = abs(end) <= abs(after)
-        across = abs(low) < abs(after) and not over
-        if not over and not across:
-            over = np.min(own) >= -band if begun else np.max(own) < 0.0
-            if begun and own[n] < -band and (_changes(own, band) <= 1 or depths[top] == DEEPEST):
-                for _ in range(HALVINGS):
-                    middle = 0.5 * (sure + end)
-                    if middle in (sure, end):
-                        break
-                    if sign * _value(values, part, middle) < 0.0:
-                        end = middle
-                    else:
-                        sure = middle
-                return float(end)
-        if over or depths[top] == DEEPEST:
-            if own[n] >= 0.0 and abs(end) > abs(after):
-                begun, sure = True, end
-            low = end
-            top -= 1
-            continue
-        depths[top] += 1
-        stack[top + 1], depths[top + 1] = own, depths[top]
-        _split(stack[top + 1], stack[top])
-        top += 1
-    return 2.0 * h
+def _first_change(values: Floats, part: int, sign: float, h: float) -> float:
+    """Return the first time in a step at which a series no longer has a sign; beyond the step where it keeps it."""
+    times = np.empty(2 * MOST_SEGMENTS)
+    return float(times[0]) if _changes(values, part, sign, h, times) > 0 else 2.0 * h
 
 
 @kernel()
@@ -176,20 +131,16 @@ def _first_return(values: Floats, operation: Integers, h: float, leading: int) -
 
     A component at least changes its sign there.
     """
-    best = 2.0 * h
+    best, times = 2.0 * h, np.empty(2 * MOST_SEGMENTS)
     for part in operation[1:4]:
-        sign, found = _side(values, part, leading, math.copysign(1.0, h)), 0.0
-        while sign != 0.0:
-            found = _first_change(values, part, sign, h, found)
-            if abs(found) >= abs(best):
-                break
+        sign = _side(values, part, leading, math.copysign(1.0, h))
+        for found in times[: _changes(values, part, sign, h, times)]:
             square, change = 0.0, 0.0
             for other in operation[1:4]:
                 value, rate = _value_and_rate(values, other, found)
                 square, change = square + value**2, change + rate**2
-            if square <= AT_ZERO**2 * change:
+            if abs(found) < abs(best) and square <= AT_ZERO**2 * change:
                 best = found
-            sign = -sign
     return best
 
 
@@ -239,20 +190,20 @@ def until_corner(laws: PackedLaws, values: Floats, h: float, course: Floats, sin
                 continue
             if mark != 0.0 and _turns_back(values, operation[1], sign, course[0]):
                 return math.nan
-            found, next_mark = _first_change(values, operation[1], sign, h, 0.0), -sign
+            found, next_mark = _first_change(values, operation[1], sign, h), -sign
             if abs(found) > NEARBY * max(abs(h), abs(since)):
                 # The rest of the way is short, and its end known to as many digits of it.
                 found, next_mark = found * (1.0 - SHORT_OF), 0.0
         elif code in (ROOT, POWER):
             # Beyond a double zero of its argument the series is that of the other branch, which is negative.
-            found, next_mark = _first_change(values, o, 1.0, h, 0.0), 0.0
+            found, next_mark = _first_change(values, o, 1.0, h), 0.0
         elif code == LENGTH:
             part, next_mark = _along_a_line(values, operation), 0.0
             leading = leading_power(values, operation, values.shape[1] - 3)
             if part < 0:
                 found = _first_return(values, operation, h, leading)
             else:
-                found = _first_change(values, part, values[o, leading, 0] * values[part, leading, 0], h, 0.0)
+                found = _first_change(values, part, values[o, leading, 0] * values[part, leading, 0], h)
         else:
             continue
         if abs(found) > abs(h) or abs(found) > abs(best) + TOGETHER * abs(h):

@@ -192,7 +192,7 @@ def test_a_sign_of_what_stays_zero_is_zero() -> None:
     compared(answer(scene(["1 + sign(y)", 0]), [0.0, 1.0]), "p.velocity", lambda t: [t, 0])
 
 
-@pytest.mark.parametrize("half", ["1/10", "1/100", "1/1000"])
+@pytest.mark.parametrize("half", ["1/10", "1/300", "1/10000"])
 @pytest.mark.parametrize("of", ["t", "x"])
 def test_a_force_that_acts_for_a_short_time_is_not_passed_over(half: str, of: str) -> None:
     """Within half a width of t = 1/2 or x = 1/2 it gives a momentum, or does a work, of 1/10."""
@@ -200,16 +200,18 @@ def test_a_force_that_acts_for_a_short_time_is_not_passed_over(half: str, of: st
     found = answer(scene([force, 0], velocity=[1, 0]), [1, 2])
     right = 1.1 if of == "t" else float(np.sqrt(1.2))
     assert found.trajectory is not None
-    assert np.max(np.abs(found.trajectory.columns["p.velocity"].values[:, 0] - right)) < 1e-14
+    own = found.trajectory.columns["p.velocity"]
+    assert np.max(np.abs(own.values[:, 0] - right)) <= own.error < 1e-12
 
 
-@pytest.mark.parametrize("width", ["1/10", "1/100", "1/1000"])
+@pytest.mark.parametrize("width", ["1/10", "1/300", "1/10000"])
 def test_of_three_changes_the_first_two_are_not_passed_over_for_the_last(width: str) -> None:
     """A force of 1/(10 w) within w after t = 1/2, and again from t = 1.9 on."""
     force = f"if((t - 1/2)*(t - 1/2 - {width})*(t - 1.9), 1/(10*({width})), 0)"
     found = answer(scene([force, 0], velocity=[1, 0]), [1, 1.8])
     assert found.trajectory is not None
-    assert np.max(np.abs(found.trajectory.columns["p.velocity"].values[:, 0] - 1.1)) < 1e-14
+    own = found.trajectory.columns["p.velocity"]
+    assert np.max(np.abs(own.values[:, 0] - 1.1)) <= own.error < 1e-12
 
 
 @pytest.mark.parametrize("apart", ["1/10", "1/1000"])
