@@ -44,7 +44,7 @@ ALLOWED["multibody"] = (
 
 WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",
        "prometheus_client", "service"}  # fmt: skip
-OUTER = ("assessment", "studies", "work_precision")
+OUTER = ("assessment", "sensitivities", "studies", "work_precision")
 """Modules that compare results across packages, and may therefore import all of core."""
 
 SERVICE_LAYERS = (

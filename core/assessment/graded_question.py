@@ -238,8 +238,12 @@ class GradedQuestion:
         return self._stated(path, value, form_of(path, value, self._unit(path, self.answer)), self.answer)
 
     def _unit(self, path: Path, answer: Mapping[str, Any]) -> str:
-        beside = value_at(answer, (*path[:-1], "unit")) if len(path) > 1 else None
-        return beside if isinstance(beside, str) else self._source.unit_of_answer(path) or "1"
+        for k in range(len(path) - 1, 0, -1):
+            # An entry of an array has the unit that stands beside the array.
+            beside = value_at(answer, (*path[:k], "unit"))
+            if isinstance(beside, str):
+                return beside
+        return self._source.unit_of_answer(path) or "1"
 
     def _stated(self, path: Path, value: Any, form: Form, answer: Mapping[str, Any]) -> Reference:
         if form == "choice":
@@ -324,7 +328,7 @@ def _bound_beside(answer: Mapping[str, Any], path: Path) -> float | Floats | Non
     names = [k for k, step in enumerate(path) if isinstance(step, str)]
     outer, own = path[: names[-1]], path[names[-1] :]
     bound = value_at(answer, (*outer, "errors", own[0]))
-    if bound is None and own[0] in ("value", "values"):
+    if bound is None and own[0] in ("value", "values", "time"):
         bound = value_at(answer, (*outer, "error"))
     return bound if isinstance(bound, (float, np.ndarray)) else None
 
