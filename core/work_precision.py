@@ -37,6 +37,7 @@ from core.systems.methods import (
     SymmetricSplitting,
 )
 from core.systems.methods.dormand_prince_853 import SMALLEST_TOLERANCE
+from core.systems.methods.from_scipy import has_scipy
 from core.systems.solve import checked_times
 from core.systems.system import InitialValueProblem
 
@@ -206,7 +207,7 @@ def check_distinct(methods: Sequence[Method]) -> None:
 
 
 def default_methods(system: InitialValueProblem, times: Floats) -> tuple[Method, ...]:
-    """Return every method that the system admits, with a ladder of settings.
+    """Return every method that is installed and that the system admits, with a ladder of settings.
 
     Steps are fractions of the motion's own time, the size of the state over its rate of change, or of the horizon where
     that is shorter or the start is at rest.
@@ -225,8 +226,9 @@ def default_methods(system: InitialValueProblem, times: Floats) -> tuple[Method,
         if system.structure.discrete is not None:
             found.append(DiscreteMoserVeselov(step))
     found += [DormandPrince853(tolerance) for tolerance in TOLERANCES]
-    for tolerance in SCIPY_TOLERANCES:
-        found += [Lsoda(tolerance), Radau(tolerance)]
+    if has_scipy():
+        for tolerance in SCIPY_TOLERANCES:
+            found += [Lsoda(tolerance), Radau(tolerance)]
     return tuple(found)
 
 

@@ -199,6 +199,12 @@ def test_the_service_has_no_mechanics(path: Path) -> None:
     assert not {"scipy", "numba", "mpmath", "flint"} & {entry.split(".")[0] for entry in imports(path)}
 
 
+@for_each(CORE)
+def test_scipy_is_optional(path: Path) -> None:
+    """Its solvers are methods that a question may name (`systems/methods/from_scipy.py`); all else does without."""
+    assert "scipy" not in {entry.split(".")[0] for entry in imports(path)}
+
+
 @for_each(CORE + SERVICE)
 def test_no_function_assigns_a_global(path: Path) -> None:
     for node in nodes(path):

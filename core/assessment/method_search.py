@@ -4,7 +4,7 @@ An integrator of order p has an error proportional to step^p. From one run the s
 size of the samples' error. Steps near it (parts of the spacing of the samples, round numbers, and the number itself)
 are then run; of solvers that choose their steps, the tolerances whose error is of that size. What explains the error to
 a thousandth, or to the last digit that the samples have, is what they are consistent with, unless another method does
-so nearly as well.
+so nearly as well. The solvers are SciPy's own, and are looked for where it is installed.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from core.errors import MechanicsError
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ExplicitEuler, ImplicitMidpoint, RungeKutta4, SymmetricSplitting
+from core.systems.methods.from_scipy import has_scipy, scipy_integrate
 from core.work import spend
 
 METHODS = (ExplicitEuler, SemiImplicitEuler, ExplicitMidpoint, Heun, RungeKutta4, ImplicitMidpoint, SymmetricSplitting)
@@ -129,7 +130,7 @@ class MethodSearch:
         return None
 
     def _of_solvers(self, rows: Floats, error: float, enough: float) -> Iterator[Consistent]:
-        if self.times.min() < 0.0 or len(np.unique(self.times)) < len(self.times):
+        if not has_scipy() or self.times.min() < 0.0 or len(np.unique(self.times)) < len(self.times):
             return
         for solver in SOLVERS:
             for absolute in ABSOLUTE:
@@ -159,8 +160,6 @@ class MethodSearch:
         return self._solved.get(key)
 
     def _solve(self, solver: str, rtol: float, atol: float) -> Floats | None:
-        from scipy.integrate import solve_ivp
-
         tensor, inverse = self.system.tensor, np.linalg.inv(self.system.tensor)
 
         def slope(time: float, state: Floats) -> Floats:
@@ -175,8 +174,9 @@ class MethodSearch:
         before, order = self._left, np.argsort(self.times)
         with suppress(_TooMany), np.errstate(all="ignore"):
             span, at = (0.0, float(self.times[order[-1]])), self.times[order]
-            solve: Any = solve_ivp
-            found = solve(slope, span, self.system.angular_velocity, solver, at, rtol=rtol, atol=atol)
+            found = scipy_integrate().solve_ivp(
+                slope, span, self.system.angular_velocity, solver, at, rtol=rtol, atol=atol
+            )
             spend(before - self._left)
             if found.success and found.y.shape[1] == len(order):
                 return np.asarray(found.y.T[np.argsort(order)], np.float64)

@@ -22,6 +22,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import InvalidParameter
+from core.studies.sobol import BITS, SobolPoints
 from core.studies.study_input import StudyInput
 
 Kind = Literal["product", "zip", "sobol", "random"]
@@ -29,8 +30,8 @@ Kind = Literal["product", "zip", "sobol", "random"]
 BLOCK = 4096
 """Members whose random numbers come from one generator."""
 
-MOST_MEMBERS = 2**30
-"""Members of a study: the points that scipy's Sobol sequence has."""
+MOST_MEMBERS = 2**BITS
+"""Members of a study: the points that the Sobol sequence has."""
 
 
 @dataclass(frozen=True)
@@ -134,13 +135,5 @@ class Design:
         return found
 
     def _sobol(self, start: int, stop: int) -> Floats:
-        from scipy.stats import qmc
-
-        chance = np.random.Generator(np.random.PCG64(np.random.SeedSequence(self.seed or 0)))
-        sequence = qmc.Sobol(len(self.inputs), scramble=True, rng=chance)
-        if start:
-            sequence.fast_forward(start)
-            return np.asarray(sequence.random(stop - start))
-        # The first point alone: of others than a power of two scipy warns that they are not balanced, which here is for
-        # who chooses the count.
-        return np.concatenate((sequence.random(1), sequence.random(stop - 1)))
+        chance = np.random.Generator(np.random.PCG64(np.random.SeedSequence(self.seed or 0, spawn_key=(0,))))
+        return SobolPoints(len(self.inputs), chance).points(start, stop)

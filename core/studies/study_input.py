@@ -6,6 +6,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
+from statistics import NormalDist
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -25,6 +26,8 @@ SMALLEST_CHANCE = 2.0**-54
 
 FARTHEST = 8.5
 """Deviations beyond which no number of a normal distribution is: 8.3 belong to the smallest chance."""
+
+_STANDARD = NormalDist()
 
 Levels = Annotated[int, Quantity("1", at_least=1, at_most=MOST_LEVELS)]
 Deviation = Annotated[float, Quantity("1", above=0)]
@@ -135,12 +138,10 @@ class StudyInput(VariedInput):
         if self.values is not None:
             return np.minimum(np.floor(chances * len(self.values)), len(self.values) - 1.0)
         if self.distribution == "normal":
-            from scipy.special import ndtri
-
             assert self.mean is not None
             assert self.deviation is not None
-            quantiles: Floats = ndtri(np.maximum(chances, SMALLEST_CHANCE))
-            return self.mean + self.deviation * quantiles
+            within = np.maximum(chances, SMALLEST_CHANCE).tolist()
+            return self.mean + self.deviation * np.array([_STANDARD.inv_cdf(chance) for chance in within])
         if self.distribution == "uniform" and self.step is None and self.digits is None:
             assert self.min is not None
             assert self.max is not None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from contextlib import suppress
-from importlib import import_module
 from math import inf, isfinite
 from typing import Any
 
@@ -13,6 +12,7 @@ import orjson
 from core.errors import Path, pointer_of
 from core.notices import Notice
 from core.systems.budget import Budget
+from core.systems.methods.from_scipy import has_scipy, scipy_integrate
 from core.work import WorkLimitReached, work_limit
 from service.requests.request_reader import Limits, Reader
 from service.routing import Answer, PostRoute, never
@@ -60,8 +60,9 @@ class RequestHandler:
         for route, question in sorted(asked, key=lambda each: (each[0].path == DESCRIBED_SCENES) != scenes_first):
             with suppress(WorkLimitReached), work_limit(work):
                 self.answer(route, self.read(route, orjson.dumps(question)))
-        # Its first use would otherwise import it, and hold up the event loop.
-        import_module("scipy.integrate")
+        if not isfinite(work) and has_scipy():
+            # The first question that names one of its methods would otherwise wait for it.
+            scipy_integrate()
 
 
 def signed(fields: Answer) -> Answer:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Protocol
 
-import zstandard
+if sys.version_info >= (3, 14):
+    from compression.zstd import ZstdCompressor
+else:
+    from backports.zstd import ZstdCompressor
 
 LEAST = 1_400
 """Bytes of a body from which on it is compressed: a shorter one fits into a single packet as it is."""
@@ -63,14 +67,14 @@ def _gzip(level: int) -> Compressor:
     return zlib.compressobj(level, zlib.DEFLATED, 16 + zlib.MAX_WBITS)
 
 
-def _zstd(level: int) -> Compressor:
-    made: Compressor = zstandard.ZstdCompressor(level).compressobj()
-    return made
+def zstd(level: int) -> Compressor:
+    """Return a compressor with zstd of a level (RFC 8878)."""
+    return ZstdCompressor(level)
 
 
 # The lowest levels: higher ones take several times as long for rows of numbers, which shrink by a few percent more.
 CODINGS = (
-    Coding(b"zstd", partial(_zstd, 1), partial(_zstd, 15)),
+    Coding(b"zstd", partial(zstd, 1), partial(zstd, 15)),
     Coding(b"gzip", partial(_gzip, 1), partial(_gzip, 9)),
 )
 """Best first: zstd compresses several times as fast."""

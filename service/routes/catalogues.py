@@ -132,7 +132,7 @@ def undecided() -> list[dict[str, Any]]:
 
 
 def methods() -> list[dict[str, Any]]:
-    """Return the catalogue of methods as it is published."""
+    """Return the catalogue of the methods that are installed, as it is published."""
     measured: dict[str, list[dict[str, Any]]] = {}
     for entry in record():
         shown = {"tolerance": entry.tolerance, "error": entry.error, "evaluations": entry.evaluations}
@@ -151,6 +151,7 @@ def methods() -> list[dict[str, Any]]:
             "record": sorted(measured.get(member.kind, []), key=lambda shown: shown["tolerance"]),
         }
         for member in members
+        if member.is_installed()
     ]
 
 

@@ -5,7 +5,7 @@ from importlib import import_module
 
 import service.studies.task  # noqa: F401
 
-for name in ("distributed", "scipy.special", "service.routes"):
+for name in ("distributed", "service.routes"):
     import_module(name)
 # The collector writes into every object that it visits: pages that processes share would be copied for each.
 gc.collect()

@@ -19,7 +19,7 @@ JSON_TYPE = "application/json"
 REPRESENTATIONS: dict[str, str | None] = {
     JSON_TYPE: None,
     npz.MEDIA_TYPE: None,
-    tables.MEDIA_TYPE: "pyarrow",
+    tables.MEDIA_TYPE: None,
     grids.MEDIA_TYPE: "zarr",
     comma_separated.MEDIA_TYPE: None,
     SVG: None,

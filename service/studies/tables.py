@@ -6,50 +6,40 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
-from service.responses.npz import Sink
+from service.studies.parquet import Column, Kind, ParquetFile
 from service.studies.results import Results, values
 
 MEDIA_TYPE = "application/vnd.apache.parquet"
 
 
 def table(results: Results) -> Iterator[bytes]:
-    """Yield all results as a Parquet file; pointers are the names of columns, units are in their metadata.
-
-    Raises
-    ------
-    ImportError
-        Without pyarrow, an optional dependency.
-    """
-    import pyarrow as pa
-    from pyarrow.parquet import ParquetWriter
-
+    """Yield all results as a Parquet file; pointers are the names of columns, units are in its metadata."""
     about = results.metadata()
-    fields = [pa.field("member", pa.int64())]
-    for column in (*about["axes"], *about["columns"]):
-        plain = column.get("values") is None or _all_numbers(column["values"])
-        unit = {} if column["unit"] is None else {"unit": column["unit"]}
-        fields.append(pa.field(column["pointer"], pa.float64() if plain else pa.string(), metadata=unit))
-    fields += [pa.field("failure", pa.string()), pa.field("warnings", pa.string())]
-    schema = pa.schema(fields, metadata={"study": results.study.id, "request": json.dumps(results.request)})
-    sink = Sink()
-    with pa.PythonFile(sink, mode="w") as file, ParquetWriter(file, schema) as writer:
-        for chunk in results.chunks():
-            columns: list[Any] = [np.arange(chunk.start, chunk.stop)]
-            for k, entry in enumerate(results.request["vary"]):
-                listed = values(entry, chunk.inputs[:, k])
-                texts = pa.types.is_string(schema.field(1 + k).type)
-                columns.append([json.dumps(value) for value in listed] if texts else np.array(listed, dtype=np.float64))
-            # Absent figures are null, as in JSON.
-            columns += [pa.array(column, from_pandas=True) for column in chunk.figures.T]
-            for labels, names in ((chunk.failures, chunk.failure_names), (chunk.warnings, chunk.warning_names)):
-                columns.append([names[label - 1] if label else None for label in labels.tolist()])
-            arrays = [pa.array(column, type=field.type) for column, field in zip(columns, schema, strict=True)]
-            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
-            yield sink.drained()
-    yield sink.drained()
+    described = (*about["axes"], *about["columns"])
+    inputs = [Column(axis["pointer"], _kind(axis["values"])) for axis in about["axes"]]
+    figures = [Column(column["pointer"], Kind.DOUBLE, optional=True) for column in about["columns"]]
+    labels = [Column(name, Kind.TEXT, optional=True) for name in ("failure", "warnings")]
+    metadata = {
+        "study": results.study.id,
+        "request": json.dumps(results.request),
+        "units": json.dumps({column["pointer"]: column["unit"] for column in described if column["unit"] is not None}),
+    }
+    file = ParquetFile([Column("member", Kind.INTEGER), *inputs, *figures, *labels], metadata)
+    yield file.head
+    for chunk in results.chunks():
+        columns: list[Any] = [range(chunk.start, chunk.stop)]
+        for k, (entry, column) in enumerate(zip(results.request["vary"], inputs, strict=True)):
+            listed = values(entry, chunk.inputs[:, k])
+            columns.append([json.dumps(value) for value in listed] if column.kind is Kind.TEXT else listed)
+        # Absent figures are null, as in JSON.
+        columns += list(chunk.figures.T)
+        for numbers, names in ((chunk.failures, chunk.failure_names), (chunk.warnings, chunk.warning_names)):
+            columns.append([names[number - 1] if number else None for number in numbers.tolist()])
+        yield file.group(chunk.stop - chunk.start, columns)
+    yield file.foot()
 
 
-def _all_numbers(listed: Any) -> bool:
-    return all(type(value) in (int, float) for value in listed)
+def _kind(listed: Any) -> Kind:
+    """Return the type of a varied input's column: texts where some of its values are no numbers."""
+    numbers = listed is None or all(type(value) in (int, float) for value in listed)
+    return Kind.DOUBLE if numbers else Kind.TEXT

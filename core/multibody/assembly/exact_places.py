@@ -12,10 +12,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from flint import arb
-from scipy.linalg import lu_factor, lu_solve, null_space, qr
 
 from core.arrays import Floats
 from core.errors import NotApplicable
+from core.multibody.algebra.pivoting import pivoted
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, gradient, is_zero, size
 from core.multibody.assembly.quadratics import Quadratics
 from core.multibody.table.table import Table
@@ -75,8 +75,7 @@ def exact_places(
     sizes = sizes_of(table, measures, extent)
     in_doubles = Quadratics.of(measures, sizes, len(found))
     lines = in_doubles.jacobian(found)[:, movable]
-    _, triangle, order = qr(lines.T, mode="economic", pivoting=True)
-    pivots = np.abs(np.diag(triangle))
+    order, pivots = pivoted(lines.T)
     chosen = np.sort(order[: int(np.sum(pivots > INDEPENDENT * pivots.max(initial=0.0)))])
     place = {j: k for k, j in enumerate(movable)}
     weights = np.zeros((len(movable), len(movable)))
@@ -91,8 +90,10 @@ def exact_places(
     curved = weights + in_doubles.curvature(every)[np.ix_(movable, movable)]
     _require_isolated(curved, own)
     matrix = np.block([[curved, own.T], [own, np.zeros((len(chosen), len(chosen)))]])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        factors = lu_factor(matrix, check_finite=False)
+    try:
+        inverse = np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        raise _none_is_nearest() from None
     q = [arb(float(x)) if j in place else table.q[j] for j, x in enumerate(found)]
     pulls = [arb(float(x)) for x in multipliers]
     slopes = [gradient(measures[k]) for k in chosen]
@@ -102,7 +103,7 @@ def exact_places(
         # What is left is below the range of doubles in the end: they see it over the largest.
         largest = max(abs(x.mid()) for x in left)
         shares = [0.0 if largest == 0 else float(x.mid() / largest) for x in left]
-        step = lu_solve(factors, shares, check_finite=False)
+        step = inverse @ shares
         if not np.isfinite(step).all():
             break
         for j, change in zip(movable, step, strict=False):
@@ -117,7 +118,8 @@ def exact_places(
 
 def _require_isolated(curved: Floats, lines: Floats) -> None:
     """Raise `NotApplicable` where the displacement does not grow to second order in every direction that is free."""
-    free = null_space(lines, rcond=INDEPENDENT) if len(lines) else np.eye(len(curved))
+    _, values, directions = np.linalg.svd(lines)
+    free = directions[int(np.sum(values > INDEPENDENT * values.max(initial=0.0))) :].T
     bends = np.linalg.eigvalsh(free.T @ curved @ free)
     if bends.size and not bends[0] > INDEPENDENT * bends[-1]:
         raise _none_is_nearest()

@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, ctx
-from scipy.linalg import qr
 
 from core.arrays import Floats
+from core.multibody.algebra.pivoting import pivoted
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, is_zero
 from core.multibody.table.table import Row, Table
 from core.work import spend
@@ -207,8 +207,8 @@ class RestEquations:
         count = int(np.sum(values <= _OPEN * max(values[0], 1e-300)))
         if not count:
             return list(range(size)), list(range(size))
-        free = qr(right[size - count :], mode="r", pivoting=True)[1][:count].tolist()
-        spare = qr(left[:, size - count :].T, mode="r", pivoting=True)[1][:count].tolist()
+        free = pivoted(right[size - count :])[0][:count].tolist()
+        spare = pivoted(left[:, size - count :].T)[0][:count].tolist()
         return [i for i in range(size) if i not in free], [i for i in range(size) if i not in spare]
 
     def _step(self, x: Sequence[Ball], unknowns: Sequence[int], equations: Sequence[int]) -> list[Ball] | None:

@@ -2,7 +2,9 @@
 
 SciPy's solvers hold absolute lengths for first and smallest steps and absolute tolerances. They are given the motion
 in units in which the horizon and the largest component of the initial state lie between 1 and 2; the units are powers
-of two, so nothing is rounded. SciPy is imported when the first of these methods runs.
+of two, so nothing is rounded.
+
+SciPy is optional, and imported when the first of these methods runs: nothing else is computed with it.
 
 Its solvers hold the history of a motion, which cannot be moved: of a system with constraints the samples alone are
 projected onto them.
@@ -11,23 +13,51 @@ projected onto them.
 from __future__ import annotations
 
 import math
+import sys
 import warnings
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Annotated, ClassVar
+from importlib.util import find_spec
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, NotApplicable
 from core.quantities import Quantity
 from core.systems.methods.method import Leg, StepChoosing, Units
 from core.systems.system import InitialValueProblem
+from core.work import spend
 
 SMALLEST_TOLERANCE = 2.3e-14
 """SciPy works with no relative tolerance below 100 units of round-off."""
 
+_UNITS_OF_IMPORT = 20_000
+"""Of work (`core.work`): importing takes 0.2 s, which no event loop may wait."""
+
 SciPyTolerance = Annotated[float, Quantity("1", at_least=SMALLEST_TOLERANCE, below=1)]
+
+
+def has_scipy() -> bool:
+    """Return whether SciPy is installed."""
+    return find_spec("scipy") is not None
+
+
+def scipy_integrate() -> Any:
+    """Return the module `scipy.integrate`.
+
+    Raises
+    ------
+    NotApplicable
+        If SciPy is not installed.
+    """
+    if "scipy.integrate" not in sys.modules:
+        spend(_UNITS_OF_IMPORT)
+    try:
+        return import_module("scipy.integrate")
+    except ModuleNotFoundError:
+        remedy = "install polhode[scipy], or use dormand-prince-853"
+        raise NotApplicable("SciPy is not installed with this service", path=("kind",), remedy=remedy) from None
 
 
 class _LimitMet(Exception):
@@ -68,7 +98,13 @@ class FromSciPy(StepChoosing):
     solver: ClassVar[str]
     on_constraints: ClassVar[str] = "Samples alone are projected: between them the state drifts off the constraints."
 
+    @classmethod
+    def is_installed(cls) -> bool:
+        """Return whether SciPy is installed."""
+        return has_scipy()
+
     def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+        solvers = scipy_integrate()
         horizon = _power_of_two(abs(float(targets[-1])))
         size = _power_of_two(float(np.abs(start).max()))
         equation = _Scaled(system, size, horizon, limit)
@@ -80,7 +116,7 @@ class FromSciPy(StepChoosing):
             with warnings.catch_warnings(), np.errstate(all="ignore"):
                 # What fails is told by the status; SciPy's words for it would go to the process's standard error.
                 warnings.simplefilter("ignore")
-                solver = getattr(import_module("scipy.integrate"), self.solver)(
+                solver = getattr(solvers, self.solver)(
                     equation, 0.0, start / size, float(scaled[-1]), rtol=self.tolerance, atol=self.tolerance
                 )
                 while sample < targets.size:

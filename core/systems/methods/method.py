@@ -83,6 +83,11 @@ class AbstractMethod(ABC):
     def __post_init__(self) -> None:
         check(self)
 
+    @classmethod
+    def is_installed(cls) -> bool:
+        """Return whether what the method runs on is installed."""
+        return True
+
     @abstractmethod
     def integrate(self, system: InitialValueProblem, times: Floats, budget: Budget | None = None) -> Integration:
         """Return the states of `system` at `times`.

@@ -210,7 +210,7 @@ async def test_all_results_as_an_archive_a_table_and_a_grid(desk_on: Desks, in_p
         rows = parquet.read_table(io.BytesIO((await get(client, place, "application/vnd.apache.parquet")).content))
         assert rows["/position/2/0"].to_pylist() == expected
         assert rows["failure"].to_pylist() == [None, "unphysical-inertia"] * 3
-        assert rows.schema.field("/angular_velocity/0").metadata[b"unit"] == b"rad s^-1"
+        assert json.loads(rows.schema.metadata[b"units"])["/angular_velocity/0"] == "rad s^-1"
         file = tmp_path / "grid.zip"
         file.write_bytes((await get(client, place, "application/vnd.zarr+zip")).content)
         with zarr.storage.ZipStore(file, mode="r") as store:

@@ -8,9 +8,12 @@ import sys
 import numpy as np
 import pytest
 
-from core.errors import BudgetExceeded, InvalidParameter
+from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.systems.budget import Budget
 from core.systems.methods import Lsoda, Radau
+from core.work import WorkLimitReached, work_limit
+from core.work_precision import default_methods
+from service.routes.catalogues import methods
 from tests.core.systems.systems import counting, explosion, oscillator, stiff
 
 
@@ -57,3 +60,32 @@ def test_a_tolerance_that_scipy_would_raise_silently_is_refused() -> None:
 def test_scipy_is_not_imported_before_it_is_needed() -> None:
     code = "import sys, core.systems.solve; sys.exit('scipy.integrate' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.fixture
+def no_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.split(".")[0] == "scipy"] + ["scipy", "scipy.integrate"]:
+        monkeypatch.setitem(sys.modules, name, None)
+
+
+@pytest.mark.usefixtures("no_scipy")
+def test_without_scipy_its_methods_are_refused_and_not_listed() -> None:
+    with pytest.raises(NotApplicable, match="SciPy is not installed") as refused:
+        Lsoda(1e-6).integrate(oscillator(), np.array([1.0]))
+    assert (refused.value.path, refused.value.remedy) == (
+        ("kind",),
+        "install polhode[scipy], or use dormand-prince-853",
+    )
+    assert not Radau.is_installed()
+    listed = {entry["kind"] for entry in methods()}
+    assert "dormand-prince-853" in listed
+    assert not {"lsoda", "radau"} & listed
+    assert not {"lsoda", "radau"} & {method.kind for method in default_methods(oscillator(), np.array([1.0]))}
+
+
+def test_importing_scipy_counts_as_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An event loop would wait for it."""
+    monkeypatch.delitem(sys.modules, "scipy.integrate", raising=False)
+    with pytest.raises(WorkLimitReached), work_limit(10_000):
+        Lsoda(1e-6).integrate(oscillator(), np.array([1.0]))
+    assert "scipy.integrate" not in sys.modules
