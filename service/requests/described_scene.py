@@ -29,6 +29,7 @@ from core.multibody.trajectory.occurrences import MOST_FOUND, ExtremesOf, When
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
+from service.requests.figures import SensitivitiesQuestion
 from service.schemas import ROUND, Request, Rounding, Times
 
 MOST_OUTPUTS = 30
@@ -159,6 +160,9 @@ class SearchOutput(Request):
     when: WhenQuestion | None = Field(default=None, description="At which times a quantity takes a value.")
     extremes: str | None = Field(
         default=None, max_length=100, description="Of which quantity the least and the largest value are wanted."
+    )
+    sensitivities: SensitivitiesQuestion | None = Field(
+        default=None, description="Of which figures of the answer the derivatives by which numbers are wanted."
     )
 
 

@@ -143,7 +143,7 @@ class Wording:
             return Fault(
                 pointer_of(steps), detail, f'write {{"kind": ...}}, one of {", ".join(self._layout.tags[named])}'
             )
-        if kind in _OBJECTS and named in self._layout.names:
+        if kind in _OBJECTS and (named or not steps) and named in self._layout.names:
             return Fault(pointer_of(steps), detail, f"its keys: {', '.join(self._layout.names[named])}")
         if kind == "tuple_type" and named in self._layout.lengths:
             detail = f"{detail} of {self._layout.lengths[named]} entries"

@@ -2,7 +2,8 @@
 
 A reader validates JSON bytes in one step, without an intermediate Python document. Where a number is the decimal that
 is written and not the double nearest to it, the question has a method `with_digits`, which is given the document with
-decimals for numbers.
+decimals for numbers. A question that is asked again with other numbers has a method `with_document`, which is given the
+document itself.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ class Reader(Generic[Q]):
         self._schema = TypeAdapter(question).core_schema
         self._limits, self._elsewhere = limits, elsewhere or {}
         self._keeps_digits = hasattr(question, "with_digits")
+        self._keeps_document = hasattr(question, "with_document")
 
     @cached_property
     def _validate(self) -> Any:
@@ -97,6 +99,8 @@ class Reader(Generic[Q]):
             require_distinct_keys(document)
             if self._keeps_digits:
                 question = cast(Any, question).with_digits(json.loads(document, parse_float=_decimal))
+            if self._keeps_document and arrays is None:
+                question = cast(Any, question).with_document(document)
             return question
         except ValidationError as error:
             raise self._refusal(error, document) from None

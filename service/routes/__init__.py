@@ -21,6 +21,7 @@ from service.routes.rotation.surfaces import SURFACES
 from service.routes.rotation.trajectory import ROTATION
 from service.routes.rotation.wobble import WOBBLE
 from service.routes.scenes import members, scene_routes
+from service.routes.sensitivities import with_sensitivities
 from service.routes.studies import studying
 from service.routes.variants import varying
 from service.routes.work_precision import WORK_PRECISION
@@ -40,7 +41,7 @@ def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostR
     paths = [route.path for route in certified]
     rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
     ordinary = (*rotations, *scene_routes(scenes), *DESCRIBED_SCENES)
-    in_doubles = tuple(naming_certified(route, paths) for route in ordinary)
+    in_doubles = tuple(with_sensitivities(naming_certified(route, paths)) for route in ordinary)
     answering = (*in_doubles, *certified)
     studies = studying(answering)
     about_others = (

@@ -34,9 +34,12 @@ def outputs_of(model: Any) -> frozenset[str]:
     return frozenset(name for hint, _ in named if _origin(hint) is Literal for name in get_args(hint))
 
 
-def has_field(model: Any, name: str) -> bool:
+def has_field(model: Any, *path: str | int) -> bool:
     """Return whether a question may have a field."""
-    return any(True for node in _bare(model, None) for _ in _stepped(node, name))
+    nodes = [*_bare(model, None)]
+    for step in path:
+        nodes = [inner for node in nodes for inner in _stepped(node, step)]
+    return bool(nodes)
 
 
 def numbers_within(model: Any, document: Any) -> Iterator[tuple[str, float]]:
