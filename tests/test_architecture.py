@@ -303,7 +303,7 @@ TESTED_IN |= {
             "laws/law laws/linear laws/samples laws/series laws/tape table/formula_laws"
         ),
         "table/test_formulas_of_time": "audit/driven table/moving_places",
-        "laws/test_formulas_of_pieces": ("equations/starting_signs laws/corners laws/switches"),
+        "laws/test_formulas_of_pieces": ("equations/starting_signs laws/corners language/switches"),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "
             "table/frames table/joints table/measures table/rolling table/rows "

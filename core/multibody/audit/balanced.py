@@ -92,7 +92,11 @@ def _left(
     """Return what is left over of the equations, and what may be apart from stated errors, shapes (freedoms, n)."""
     some = moments.samples
     found = balance(description, some.placement, some.motion, moments.accelerations, some.forces, freedoms)
-    return np.abs(found.left()), found.allowed(moments.unsure, ledger.rounding)
+    allowed = found.allowed(moments.unsure, ledger.rounding)
+    if moments.starts and found.undecided[0]:
+        # Between two values of a force the windows decide; there what stays zero has the value at zero.
+        allowed[:, 0] = np.inf
+    return np.abs(found.left()), allowed
 
 
 def _moved(description: Description, moments: Accelerated) -> Numbers:

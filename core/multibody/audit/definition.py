@@ -10,13 +10,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, is_dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 import numpy as np
 
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, moved
 
 NOTHING: Mapping[str, Numbers] = {}
+
+
+class InPieces(Protocol):
+    """A formula, as far as its pieces go."""
+
+    @property
+    def switches(self) -> bool:
+        """Whether it has functions of several pieces."""
+
+    def undecided(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return whether a placement and its motion, moved by an imaginary step, do not tell its pieces, shape ()."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +78,25 @@ class Definition:
     def loads(self) -> bool:
         """Whether it has forces that the answer does not name."""
         return type(self).load is not Definition.load
+
+    @property
+    def formulas(self) -> tuple[InPieces, ...]:
+        """The formulas by which its forces follow."""
+        return ()
+
+    @cached_property
+    def switches(self) -> bool:
+        """Whether formulas of its forces have several pieces."""
+        return any(formula.switches for formula in self.formulas)
+
+    def ahead(self, placement: Placement, motion: Motion) -> Placement:
+        """Return a placement in which formulas of several pieces know which one follows; forces are then real parts."""
+        return moved(placement, motion, in_time=True) if self.switches else placement
+
+    def undecided(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return whether a placement and its motion, moved by an imaginary step, do not tell its pieces, shape ()."""
+        none: Numbers = np.zeros((), dtype=bool)
+        return sum((formula.undecided(placement, motion) for formula in self.formulas if formula.switches), none)
 
     @property
     def forces(self) -> tuple[str, ...]:

@@ -21,6 +21,11 @@ class PullByFormula(Pull):
     kind: ClassVar[str] = "spring"
     formula: FormulaValue
 
+    @property
+    def formulas(self) -> tuple[FormulaValue, ...]:
+        """See `Definition.formulas`."""
+        return (self.formula,)
+
     def works(self) -> bool:
         """See `Definition.works`."""
         return True
@@ -45,6 +50,11 @@ class TwistByFormula(Twisting):
     kind: ClassVar[str] = "torque"
     formula: FormulaValue
     sign: float
+
+    @property
+    def formulas(self) -> tuple[FormulaValue, ...]:
+        """See `Definition.formulas`."""
+        return (self.formula,)
 
     def works(self) -> bool:
         """See `Definition.works`."""
@@ -77,6 +87,11 @@ class ForcesByFormulas(Definition):
     kind: ClassVar[str] = "force"
     every: tuple[tuple[Place, tuple[FormulaValue, ...], float], ...]
     turns: bool = False
+
+    @property
+    def formulas(self) -> tuple[FormulaValue, ...]:
+        """See `Definition.formulas`."""
+        return tuple(formula for _, formulas, _ in self.every for formula in formulas)
 
     def works(self) -> bool:
         """See `Definition.works`."""

@@ -1,16 +1,22 @@
-"""Formulas of the motion by plain arithmetic of doubles: what their names mean in a placement and its motion."""
+"""Formulas of the motion by plain arithmetic of doubles: what their names mean in a placement and its motion.
+
+A function of several pieces has the piece that follows. Where its argument is zero, that is decided by the rate of the
+argument, which a placement and a motion that are moved by an imaginary step carry with them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from core.formulas import Arithmetic, Node, value_of
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, spin_of
+from core.formulas import Arithmetic, Node, names_of, value_of
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, angle, spin_of
 from core.multibody.language.motion_formulas import LENGTH, TIME, TURNS, motion_formula
 from core.multibody.language.numerals import Numerals
+from core.multibody.language.switches import SWITCHING, argument_of, switches_of
 
 Read = Callable[[Placement, Motion], Numbers]
 """From a placement and its motion to what a name stands for, shape ()."""
@@ -19,10 +25,11 @@ SHARE = 2.0**-20
 """Share of an input by which it is moved to see its effect: the effect is then known to some 1e-6 of itself."""
 
 
-def _chosen(condition: Numbers, one: Numbers, other: Numbers) -> Numbers:
-    """Return one value where a condition is positive, and else another."""
-    found: Numbers = np.where(condition > 0.0, one, other)
-    return found
+ZERO_SHARE = 2.0**-48
+"""Share of its terms up to which an argument is zero: a dozen roundings of doubles."""
+
+OF_SECOND_ORDER = 2.0**-800
+"""Size below which a real part is one that squares of imaginary steps of 2^-450 leave."""
 
 
 _DOUBLES = Arithmetic[Numbers](
@@ -43,12 +50,7 @@ _DOUBLES = Arithmetic[Numbers](
         "tanh": np.tanh,
         "exp": np.exp,
         "log": np.log,
-        "atan2": np.arctan2,
-        "abs": np.abs,
-        "sign": np.sign,
-        "min": np.minimum,
-        "max": np.maximum,
-        "if": _chosen,
+        "atan2": lambda y, x: angle(x, y),
         LENGTH: lambda *vector: np.sqrt(sum(x * x for x in vector)),
     },
 )
@@ -145,10 +147,81 @@ class FormulaValue:
                 found = max(found, slope / mass if name in self.rates else float(np.sqrt(slope / mass)))
         return found if np.isfinite(found) else 0.0
 
-    def _of(self, inputs: Mapping[str, Numbers], root: Node | None = None) -> Numbers:
-        names = {name: np.array(number) for name, number in self.numbers.items()}
+    @cached_property
+    def switches(self) -> bool:
+        """Whether it has functions of several pieces."""
+        return next(switches_of(self.root), None) is not None
+
+    def undecided(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return whether neither an argument of a function of several pieces nor its rate tells the piece, shape ()."""
+        inputs = {name: np.asarray(read(placement, motion)) for name, read in self.inputs.items()}
+        pieces = _Pieces({**self._numbers(), **inputs})
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            return value_of(self.root if root is None else root, {**names, **inputs}, _DOUBLES)
+            pieces.value(self.root)
+        return pieces.undecided
+
+    def _numbers(self) -> dict[str, Numbers]:
+        return {name: np.array(number) for name, number in self.numbers.items()}
+
+    def _of(self, inputs: Mapping[str, Numbers], root: Node | None = None) -> Numbers:
+        names, own = {**self._numbers(), **inputs}, self.root if root is None else root
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            return _Pieces(names).value(own) if self.switches else value_of(own, names, _DOUBLES)
+
+
+class _Pieces:
+    """Evaluates a formula, each function of several pieces on the piece that follows.
+
+    Attributes
+    ----------
+    undecided : ndarray of bool
+        Whether an argument is zero, and so is its rate as far as that is known, and pieces differ there.
+    """
+
+    def __init__(self, names: Mapping[str, Numbers]) -> None:
+        self.names = dict(names)
+        self.undecided: Numbers = np.zeros((), dtype=bool)
+
+    def value(self, root: Node) -> Numbers:
+        """Return the value of a formula."""
+        return value_of(self._settled(root), self.names, _DOUBLES)
+
+    def _settled(self, node: Node) -> Node:
+        """Return a formula in which functions of several pieces are names of their values."""
+        node = replace(node, inner=tuple(self._settled(inner) for inner in node.inner))
+        if node.kind not in SWITCHING:
+            return node
+        side = self._side(argument_of(node))
+        values = [value_of(inner, self.names, _DOUBLES) for inner in node.inner]
+        found: Numbers = side
+        match node.kind:
+            case "abs":
+                found = side * values[0]
+            case "sign":
+                self.undecided = self.undecided | (side == 0.0)
+            case "if":
+                found = np.where(side > 0.0, values[1], values[2])
+                self.undecided = self.undecided | ((side == 0.0) & (values[1] != values[2]))
+            case _:
+                first = side > 0.0 if node.kind == "max" else side <= 0.0
+                found = np.where(first, *values)
+        # No name of a formula has such a character.
+        name = f"#{len(self.names)}"
+        self.names[name] = found
+        return Node("name", name)
+
+    def _side(self, argument: Node) -> Numbers:
+        """Return the sign that an argument has just after: where it is zero, that of its rate; zero if that is, too."""
+        value = value_of(argument, self.names, _DOUBLES)
+        sizes = [abs(value)] if argument.kind in ("name", "number") else []
+        for name in names_of(argument):
+            own = self.names[name]
+            moved = {**self.names, name: own * (1.0 + SHARE)}
+            sizes.append(abs(value_of(argument, moved, _DOUBLES) - value) / SHARE)
+        size = sum(sizes, np.zeros(()))
+        known = abs(value.real) > np.maximum(ZERO_SHARE * size, OF_SECOND_ORDER)
+        side = np.where(known, np.sign(value.real), np.sign(value.imag))
+        return np.asarray(side)
 
 
 def _nodes(node: Node) -> Iterator[Node]:

@@ -262,16 +262,25 @@ class _Connection:
         connection, samples = self.connection, self.samples
         if not samples.forces or not self.known:
             return
-        for key, value in connection.laws(samples.placement, samples.motion).items():
+        for key, value in self._laws(samples).items():
             if key not in samples.forces:
                 continue
 
             def law(at: Samples, key: str = key) -> Numbers:
-                return connection.laws(at.placement, at.motion)[key] - at.forces[key]
+                return self._laws(at)[key] - at.forces[key]
 
             size = np.abs(value) + connection.law_size(samples.placement, self.size, self.speed)
             rest = value - samples.forces[key]
-            self._hold(f"law of {key}", law, size, rest, forces=(key,), rows=~np.isnan(rest))
+            rows = ~np.isnan(rest)
+            if connection.switches:
+                ahead = connection.ahead(samples.placement, samples.motion)
+                rows &= ~connection.undecided(ahead, samples.motion)
+            self._hold(f"law of {key}", law, size, rest, forces=(key,), rows=rows)
+
+    def _laws(self, samples: Samples) -> Mapping[str, Numbers]:
+        """Return the forces that follow from places and rates, those of several pieces by the piece that follows."""
+        ahead = self.connection.ahead(samples.placement, samples.motion)
+        return {key: value.real for key, value in self.connection.laws(ahead, samples.motion).items()}
 
     def check_derived(self) -> None:
         """Compare forces that follow from others of the connection with those that are answered."""

@@ -17,7 +17,7 @@ import numpy as np
 
 from core.multibody.audit.bodies import RigidBody
 from core.multibody.audit.definitions import Description
-from core.multibody.audit.placement import Motion, Numbers, Placement, Twist, cross
+from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Twist, cross
 
 Forces = Mapping[str, Numbers]
 
@@ -109,11 +109,14 @@ class EquationBalance:
         Sum of the sizes of its terms.
     free : ndarray, shape (freedoms, freedoms, samples) or None
         Projection on what is not held by unanswered forces; None where nothing is.
+    undecided : ndarray of bool, shape (samples,)
+        Where a formula changes its piece, and neither its argument nor the rate of that tells the piece that follows.
     """
 
     rest: Numbers
     size: Numbers
     free: Numbers | None
+    undecided: Numbers
 
     def left(self) -> Numbers:
         """Return what is left over apart from what unanswered forces may do, shape (freedoms, samples)."""
@@ -152,15 +155,20 @@ def balance(
     for name, body in description.bodies.items():
         _add_inertia(rest, size, freedoms, body, description.gravity, placement, motion, accelerations[name])
     held: list[Numbers] = []
+    undecided = np.zeros(samples, dtype=bool)
     for connection in description.connections:
         numbers, virtual = freedoms.virtual(connection.bodies)
+        now = connection.ahead(placement, motion), motion
+        if connection.switches:
+            now = now[0], _with_gains(motion, accelerations)
+            undecided |= connection.undecided(*now)
         efforts = connection.efforts(placement, virtual)
         missing = {
             name: np.ones(samples, dtype=bool) if name not in forces else np.isnan(forces[name])
             for name in efforts
             if name not in forces or np.isnan(forces[name]).any()
         }
-        laws = connection.laws(placement, motion) if missing else {}
+        laws = {name: value.real for name, value in connection.laws(*now).items()} if missing else {}
         for name, line in (connection.holding(placement, virtual) if missing else {}).items():
             if name in missing:
                 # A direction that vanishes holds nothing.
@@ -175,10 +183,20 @@ def balance(
         for line in connection.unanswered(placement, virtual):
             held.append(_spread(line, numbers, rest.shape))
         if connection.loads:
-            load = connection.load(placement, motion, virtual)
+            load = connection.load(*now, virtual).real
             rest[numbers] -= load
             size[numbers] += np.abs(load)
-    return EquationBalance(rest, size, _free(held))
+    return EquationBalance(rest, size, _free(held), undecided)
+
+
+def _with_gains(motion: Motion, accelerations: Mapping[str, Acceleration]) -> Motion:
+    """Return a motion that is moved by an imaginary step along the accelerations."""
+    step, found = 1j * STEP, {}
+    for name, twist in motion.items():
+        gain = accelerations[name]
+        spin = twist.spin if twist.spin is None or gain.angular is None else twist.spin + step * gain.angular
+        found[name] = Twist(twist.velocity + step * gain.linear, spin)
+    return found
 
 
 def _add_inertia(

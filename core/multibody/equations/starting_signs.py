@@ -10,9 +10,9 @@ from core.errors import InvalidParameter
 from core.formulas import Node, names_of
 from core.multibody.algebra.polynomials import ZERO, is_zero
 from core.multibody.equations.expansion import Series, expansion, leading_sign
+from core.multibody.language.switches import STARTS, argument_of, switches_of, with_starts
 from core.multibody.laws.law import Law
 from core.multibody.laws.series import LawSeries
-from core.multibody.laws.switches import STARTS, argument_of, switches_of, with_starts
 from core.multibody.table.table import Table
 
 ORDER = 6

@@ -207,7 +207,7 @@ def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, course: Fl
     values : (o, orders, 2)
     """
     _formed(laws, path, size, k, course, values)
-    if k > 0 or values.shape[1] == 1:
+    if k > 0:
         return
     grows = False
     for o in range(laws.operations.shape[0]):

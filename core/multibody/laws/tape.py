@@ -23,8 +23,8 @@ from core.formulas import Node, names_of, value_of
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
 from core.multibody.language.motion_formulas import LENGTH
 from core.multibody.language.numerals import BALLS
+from core.multibody.language.switches import STARTS, SWITCHING, argument_of
 from core.multibody.laws.law import Input, Law
-from core.multibody.laws.switches import STARTS, SWITCHING, argument_of
 
 MOST_OPERATIONS = 2000
 """Operations of the formulas of a scene: as many as a hundred formulas of twenty have, each a product of series."""

@@ -320,7 +320,8 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
     lines = np.empty((table.lines.shape[0], 2))
     space = saddle_space(table, 2)
     right, found = np.zeros((2, padded(n + m))), np.empty((2, padded(n + m)))
-    path, laws = np.empty((2, 2 * n)), np.zeros((table.laws.operations.shape[0], 1, 2))
+    # Accelerations, which the second power would be, are not known yet: an argument that is zero grows with its rate.
+    path, laws = np.zeros((2, 3 * n)), np.zeros((table.laws.operations.shape[0], 2, 2))
     course = np.zeros(1 + table.laws.operations.shape[0])
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
@@ -356,6 +357,8 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
             for i in range(n):
                 path[0, i], path[1, i] = q[s, i, 0], q[s, i, 1]
                 path[0, n + i], path[1, n + i] = v[s, i, 0], v[s, i, 1]
+            course[:] = 0.0
+            course[0] = 1.0
             values_of_laws(table.laws, path, n, 0, course, laws)
             _pushed(table.laws, laws, 0, right)
         for i in range(n + m):

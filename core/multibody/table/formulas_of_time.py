@@ -27,7 +27,7 @@ from core.multibody.algebra.polynomials import (
 )
 from core.multibody.language.motion_formulas import TIME, motion_formula
 from core.multibody.language.numerals import BALLS
-from core.multibody.laws.switches import SWITCHING
+from core.multibody.language.switches import SWITCHING
 from core.multibody.table.measures import Measures
 from core.multibody.table.table import Row
 

@@ -198,11 +198,12 @@ class Mechanism:
             placement, motion = coordinates.placement(state), coordinates.motion(state.rates)
             virtual = coordinates.motion(np.eye(coordinates.size))
         for one in self.pushing:
-            values = one.laws(placement, motion)
+            ahead = one.ahead(placement, motion)
+            values = one.laws(ahead, motion)
             efforts = one.efforts(placement, virtual) if values else {}
             for name, value in values.items():
-                total = total + value * efforts[name]
-            total = total + one.load(placement, motion, virtual)
+                total = total + value.real * efforts[name]
+            total = total + one.load(ahead, motion, virtual).real
         for chain in self.chains:
             total = total - self._gradient(state, chain.potential)
         return total

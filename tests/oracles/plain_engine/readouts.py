@@ -26,9 +26,9 @@ def forces_of(phase: Phase, state: State) -> dict[str, float]:
     ]
     found: dict[str, float] = {}
     for one in mechanism.definitions:
-        laws = one.laws(placement, motion)
+        laws = one.laws(one.ahead(placement, motion), motion)
         efforts = {} if laws else one.efforts(placement, virtual)
-        found.update({name: float(x) for name, x in laws.items()})
+        found.update({name: float(x.real) for name, x in laws.items()})
         mine = [k for k, owner in enumerate(owners) if owner is one]
         if not mine:
             found.update(dict.fromkeys(efforts, 0.0))

@@ -233,3 +233,39 @@ def test_a_speed_that_is_zero_twice_in_short_turn_has_both_corners(apart: str) -
     own = found.trajectory.columns["q.velocity"]
     assert abs(own.values[0, 0] - float(right)) <= own.error + 2.0**-54
     assert own.error < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("formula", "start", "gained"),
+    [
+        ("if(t, 2, 0)", {}, 2),
+        ("if(t^2, 2, 0)", {}, 2),
+        ("1 + sign(-t)", {}, 0),
+        ("if(x, 2, 0)", {"velocity": [1, 0]}, 2),
+        ("if(x, 2, 0)", {"velocity": [-1, 0]}, 0),
+        ("if(3*x - 0.9, 2, 0)", {"at": [0.3, 0], "velocity": [1, 0]}, 2),
+        ("if(x, 2, 1)", {}, 2),
+        ("2 + sign(vx)", {}, 3),
+        ("if(atan2(x, 1 - t), 2, 0)", {"velocity": [1, 0]}, 2),
+    ],
+)
+def test_a_force_that_jumps_at_the_start_has_the_value_that_follows(
+    formula: str, start: dict[str, Any], gained: float
+) -> None:
+    found = answer(scene([formula, 0], **start), [0.0, 1.0], ("accelerations", "trajectory"))
+    assert found.accelerations is not None
+    assert found.accelerations["p"].linear == (gained, 0.0)
+    assert found.trajectory is not None
+    velocity = found.trajectory.columns["p.velocity"].values
+    assert velocity[1, 0] - velocity[0, 0] == pytest.approx(gained, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("law", "forces"), [("if(t - 1/2, 2, 0)", [0, 2, 2]), ("if(t, 2, 0)", [2, 2, 2]), ("if(1 - length, 1, 0)", [0, 0, 0])]
+)
+def test_a_sample_at_a_jump_has_the_force_that_follows(law: str, forces: list[float]) -> None:
+    spring = {"kind": "spring", "name": "s", "a": "p", "b": [0, 0], "law": law}
+    body = {"p": {"mass": 1, "at": [1, 0], "velocity": [4, 0]}}
+    found = answer({"gravity": [0, 0], "bodies": body, "connections": [spring]}, [0.0, 0.5, 1.0])
+    assert found.trajectory is not None
+    assert found.trajectory.columns["s.force"].values.tolist() == forces
