@@ -18,6 +18,7 @@ import numpy as np
 from core.arrays import Floats, Integers
 from core.multibody.algebra.polynomials import ZERO, Ball
 from core.multibody.laws.kernel import PackedLaws
+from core.multibody.laws.samples import values_of
 from core.multibody.laws.tape import Tape
 from core.multibody.table.table import Table
 
@@ -151,7 +152,8 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     spins = [exponent(x) for i, x in enumerate(acceleration) if table.units[i] in ("1", "rad")]
     size, rate, pull = _most(sizes), _most(rates), _most(pulls)
     turn, spin = _most(turns), _most(spins)
-    heaviest = _most([exponent(x) for x in table.load.values()])
+    pushes = _pushes(table)
+    heaviest = _most([*map(exponent, table.load.values()), *(e for _, e in pushes)])
     inert = _most([exponent(x) for (i, j), x in table.mass.items() if i == j])
     loaded = heaviest is not None and inert is not None
     if pull is not None and loaded and pull < (heaviest or 0) - (inert or 0) - ROUNDED:
@@ -180,6 +182,7 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     masses = [e + lengths[i] + lengths[j] for (i, j), x in table.mass.items() if (e := exponent(x)) is not None]
     works = [e + lengths[i] + lengths[j] for (i, j), x in table.stiffness.items() if (e := exponent(x)) is not None]
     works += [e + lengths[i] for i, x in table.load.items() if (e := exponent(x)) is not None]
+    works += [e + lengths[i] for i, e in pushes]
     if masses and works:
         # Beside an equilibrium neither rates nor accelerations tell how fast springs swing and loads pull.
         times.append((max(masses) - max(works)) // 2)
@@ -199,6 +202,20 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         ]
         rows.append(-max(terms, default=0))
     return Units(lengths, time, max(masses, default=0), rows)
+
+
+def _pushes(table: Table) -> list[tuple[int, int]]:
+    """Return coordinates that formulas push, and exponents of the largest terms of which these forces are sums."""
+    acting = table.acting
+    if not acting:
+        return []
+    q, v = (np.array([[[float(x.mid()), 0.0] for x in state]]) for state in (table.q, table.v))
+    found = []
+    for law in acting:
+        size = float(values_of(law, q, v)[1][0])
+        if 0.0 < size < math.inf:
+            found += [(i, math.frexp(size)[1] + e) for i, x in law.push.items() if (e := exponent(x)) is not None]
+    return found
 
 
 def _most(exponents: Sequence[int | None]) -> int | None:

@@ -261,7 +261,8 @@ def test_a_force_that_jumps_at_the_start_has_the_value_that_follows(
 
 
 @pytest.mark.parametrize(
-    ("law", "forces"), [("if(t - 1/2, 2, 0)", [0, 2, 2]), ("if(t, 2, 0)", [2, 2, 2]), ("if(1 - length, 1, 0)", [0, 0, 0])]
+    ("law", "forces"),
+    [("if(t - 1/2, 2, 0)", [0, 2, 2]), ("if(t, 2, 0)", [2, 2, 2]), ("if(1 - length, 1, 0)", [0, 0, 0])],
 )
 def test_a_sample_at_a_jump_has_the_force_that_follows(law: str, forces: list[float]) -> None:
     spring = {"kind": "spring", "name": "s", "a": "p", "b": [0, 0], "law": law}
