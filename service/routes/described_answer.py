@@ -129,7 +129,8 @@ class EndEvent(View):
 
     kind: str = Field(
         description="touch, lift-off, slip, stick, roll, settle (bounces accumulate and end) of contacts; taut and "
-        "slack of strings; stop and release of turns; singular: a length has become zero; or the code of a problem."
+        "slack of strings; stop and release of turns; singular: a length has become zero, or connections lose their "
+        "hold; or the code of a problem."
     )
     name: str = Field(description="Of the connection; empty where several make a place singular.")
     time: Seconds[float]

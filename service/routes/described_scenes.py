@@ -129,6 +129,7 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 
 HEAVY_BODY = scene_catalogue()["kovalevskaya-top"].question
 TURNING_SLIP = {**scene_catalogue()["stone-across-slope"].question, "times": [0.01]}
+LOOP = {**scene_catalogue()["four-bar-linkage"].question, "times": [0.05]}
 BY_METHOD = {
     **scene_catalogue()["double-pendulum"].question,
     "times": [0.0, 0.1],
@@ -149,9 +150,9 @@ DESCRIBED_SCENES = (
         DescribedSceneRequest,
         DescribedSceneAnswer,
         solved,
-        # A heavy body about a point has kernels of its own, one of them for its start alone; so have a named method and
-        # a slip that turns.
-        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, BY_METHOD, SEARCHED, TURNING_SLIP),
+        # A heavy body about a point has kernels of its own, one of them for its start alone; so have a named method, a
+        # loop of bars and a slip that turns.
+        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, LOOP, BY_METHOD, SEARCHED, TURNING_SLIP),
         description=DESCRIPTION,
         representations={SVG: draw_described},
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -11,6 +12,7 @@ from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
+from core.multibody.motion.lost_rank import KEPT, first_lost, lines_that_may_depend
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.series import DONE, FULL, LOST, STUCK, advance, placed, sampled
 from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
@@ -73,7 +75,13 @@ class Run:
 
 @dataclass
 class Numerical(Motion):
-    """A part that has no closed form."""
+    """A part that has no closed form.
+
+    Attributes
+    ----------
+    rows : ndarray of int
+        Numbers, among the rows in the arrays, of those that may come to depend on one another.
+    """
 
     table: Table
     arrays: Packed
@@ -83,13 +91,15 @@ class Numerical(Motion):
     how: str = "measured against pairs"
     period: Ball | None = None
     lost_to_doubles: bool = False
+    rows: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
     _runs: dict[tuple[str, int], Run] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, table: Table, acceleration: Sequence[Ball], chosen: Sequence[int], why: str) -> Numerical:
         """Return the motion of a table in its own units."""
         units = units_of(table, acceleration)
-        return cls(table, packed(table, chosen, units), units, why=why)
+        rows = lines_that_may_depend(table, chosen)
+        return cls(table, packed(table, chosen, units), units, why=why, rows=rows)
 
     def keep_to_pairs(self) -> None:
         """Have it answered by pairs, judged by a coarser run in pairs."""
@@ -111,7 +121,7 @@ class Numerical(Motion):
 
     def steps(self, kind: str, end: float) -> Run:
         """Take steps to a time in the units of the arrays."""
-        return integrate(self.table, self.arrays, self.units, kind, end)
+        return up_to_lost_rank(self.arrays, self.rows, integrate(self.table, self.arrays, self.units, kind, end))
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, and how far they are from a run in pairs."""
@@ -316,6 +326,33 @@ def run_by(
         single[0, :, 0], single[0, :, 1] = start
         return Run(np.zeros((2, 2)), single, ended != DONE)
     return Run(np.concatenate(starts), series[0] if len(series) == 1 else np.concatenate(series), ended != DONE)
+
+
+def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:
+    """Return a run up to the first place where some rows lose their rank, the whole run where they keep it.
+
+    Raises
+    ------
+    AccuracyUnreachable
+        Where it is not known whether they do.
+    """
+    if not len(rows):
+        return run
+    values = run.series if run.series.ndim == 3 else run.series[..., 0]
+    step, time = first_lost(arrays, rows, run.starts, np.ascontiguousarray(values))
+    if time == KEPT:
+        return run
+    if math.isnan(time):
+        raise AccuracyUnreachable(
+            None,
+            np.inf,
+            "whether the connections keep their hold is not known: they come very near to places where they lose it",
+            path=("times",),
+            remedy="ask for earlier times",
+        )
+    starts = run.starts[: step + 2].copy()
+    starts[-1] = starts[step] + [time, 0.0]
+    return Run(starts, run.series[: step + 1], singular=True)
 
 
 def evaluate(run: Run, times: Floats) -> tuple[Floats, Floats]:

@@ -21,6 +21,7 @@ from core.compiled import kernel
 from core.double_double import Pair, dd_add, dd_add_d, dd_mul, dd_mul_d
 from core.multibody.algebra.polynomials import BITS, Ball, is_zero
 from core.multibody.equations.packed import Units, packed, pair, state, two_to, units_of
+from core.multibody.motion.lost_rank import lines_that_may_depend
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.numerical import (
     CHECK_ORDER,
@@ -28,6 +29,7 @@ from core.multibody.motion.numerical import (
     FINE_ORDER,
     FINE_TOLERANCE,
     Run,
+    up_to_lost_rank,
 )
 from core.multibody.motion.returns import PLACES, POWER, RATES, Passage, Section, added, distance, followed
 from core.multibody.motion.series_pairs import moved_pairs
@@ -162,6 +164,8 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
     if found is None or check is None or len(found[1]) != len(check[1]):
         return None
     run, (*_, (time, end, rate)) = found
+    if up_to_lost_rank(arrays, lines_that_may_depend(table, chosen), run).singular:
+        return None
     other = check[1][-1]
     late = abs((time[0] - other.time[0]) + (time[1] - other.time[1])) + 2.0**-100 * abs(time[0])
     off = max(distance(end, other.q, range(len(q))), distance(rate, other.v, range(len(q)))) + 2.0**-98

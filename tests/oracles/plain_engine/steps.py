@@ -37,6 +37,9 @@ HALF = 0.5
 """Share of the least value seen above which the vertex of a parabola has to be for a figure to stay clear of zero."""
 GRAZES = 1e-9
 """Share of a gap's own size to which it is known whether it reaches zero where it turns back."""
+LOSES_RANK = 1e-4
+"""Share of its value at the start of a phase to which the product of squares has fallen where steps end because the
+rank is lost."""
 TOUCHES = {"gap": GRAZES, "rank": 1e-12}
 """The same of what ends a motion there; a product of squares is zero to the square of what places are known to."""
 
@@ -115,6 +118,27 @@ class Stepper:
         self, state: State, start: float, end: float, figures: Figures, samples: list[float], first: float | None
     ) -> Iterator[tuple[float, State] | Crossing]:
         """Yield the states at the samples, and last the first crossing; or the state at the end."""
+        last = deque([(start, state)], maxlen=8)
+        try:
+            yield from self._until(state, start, end, figures, samples, first, last)
+        except (NotSupported, np.linalg.LinAlgError):
+            # Beside a place where connections lose their rank forces grow beyond bounds.
+            (before, then), (time, now) = last[0], last[-1]
+            size, earlier, lost = (figures(x, "rank").get(("rank", -1), 0.0) ** 0.5 for x in (state, then, now))
+            if not 0.0 < lost < min(earlier, LOSES_RANK**0.5 * size):
+                raise
+            yield Crossing(("rank", -1), time + lost * (time - before) / (earlier - lost), now)
+
+    def _until(
+        self,
+        state: State,
+        start: float,
+        end: float,
+        figures: Figures,
+        samples: list[float],
+        first: float | None,
+        last: deque[tuple[float, State]],
+    ) -> Iterator[tuple[float, State] | Crossing]:
         times, curves, now = [start], [figures(state)], start
         dense: list[Callable[[float], Floats]] = []
         for stop in [*[t for t in samples if start < t < end], end]:
@@ -129,6 +153,7 @@ class Stepper:
                     yield crossing
                     return
                 first, state = solver.h_abs, after
+                last.append((solver.t, after))
             now = stop
             yield now, state
 
