@@ -23,6 +23,7 @@ Code = Literal[
     "no-progress",
     "event-limit",
     "lost-event",
+    "corner-on-corner",
 ]
 
 DOCUMENT = "docs/physics/undecided.md"
@@ -101,6 +102,11 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
             "Whether a contact is reached is not known",
             "A gap turns back at zero, to the width of its error: a bounce and a miss differ by more than the error "
             "that could be stated.",
+        ),
+        UndecidedKind(
+            "corner-on-corner",
+            "Two corners meet",
+            "Where two corners without radius meet, the direction in which they push one another is not determined.",
         ),
         UndecidedKind(
             "several-onsets",

@@ -41,6 +41,7 @@ from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import AssembledBody, Assembly
 from core.multibody.table.description import Described, described
+from core.multibody.table.facing import facing
 from core.near_names import near_and_all
 from core.work import spend
 
@@ -141,7 +142,7 @@ def _places(scene: Scene, found: Described, bodies: Sequence[str]) -> _Places:
         nearest, q = _met(scene, found, names, measures, metric, free, extent)
         overlapping = [
             one
-            for one in found.measures.unilateral
+            for one in facing(found.measures.unilateral, q, table.v)
             if one.name not in kept and evaluated(one.gap, q) < -(arb(10) ** -(DIGITS - 15)) * size(one.gap, q)
         ]
         if not overlapping:

@@ -14,6 +14,7 @@ from core.multibody.audit.placement import Numbers, Place, Placement, Pose, turn
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.language.shapes import shape_of
 from core.multibody.language.written import GROUND
 
 Path = tuple[str | int, ...]
@@ -32,6 +33,8 @@ class RigidBody:
     inertia : ndarray, shape () in the plane and (3, 3) in space, or None
         About the centre of mass, in space in body axes (kg m^2); None of a particle.
     radius : float or None
+    outline : tuple of corners and a radius, or None
+        Of its shape: corners in body axes from the centre of mass (m), and the radius of what is within it of them.
     start : Pose
     velocity, angular_velocity : ndarray or None
         As far as they are given; in space the angular velocity is in body axes.
@@ -46,6 +49,7 @@ class RigidBody:
     velocity: Numbers | None = None
     angular_velocity: Numbers | None = None
     places: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    outline: tuple[tuple[tuple[float, ...], ...], float] | None = None
 
     @cached_property
     def moment(self) -> float:
@@ -129,6 +133,14 @@ class Reader:
         body = self.bodies.get(value) if isinstance(value, str) else None
         return 0.0 if body is None or body.radius is None else body.radius
 
+    def corners(self, value: object, path: Path) -> tuple[tuple[Place, ...], float]:
+        """Return what a body touches with as a whole, as its corners and a radius; of a place, itself and 0."""
+        body = self.bodies.get(value) if isinstance(value, str) else None
+        if body is None or body.outline is None:
+            return (self.place(value, path),), self.rim(value)
+        corners, radius = body.outline
+        return tuple(Place(body.name, corner) for corner in corners), radius
+
     def turns(self, body: str | None) -> bool:
         """Return whether something is a body with inertia."""
         return body is not None and body in self.bodies and self.bodies[body].inertia is not None
@@ -153,17 +165,33 @@ class Reader:
             name,
             mass,
             tensor,
-            None if body.radius is None else self.number(body.radius, (*path, "radius")),
+            self._rim(name),
             start,
             None if body.velocity is None else np.array(self.vector(body.velocity, (*path, "velocity"))),
             omega,
             {spot: self.vector(value, (*path, "places", spot)) for spot, value in body.places.items()},
+            self._outline(name),
         )
+
+    def _rim(self, name: str) -> float | None:
+        body = self.scene.bodies[name]
+        own = ("radius",) if body.radius is not None else ("shape", "radius")
+        return None if body.rim is None else self.number(body.rim, ("bodies", name, *own))
+
+    def _outline(self, name: str) -> tuple[tuple[tuple[float, ...], ...], float] | None:
+        written = self.scene.bodies[name].shape
+        if written is None:
+            return None
+        outline = shape_of(written, self.numerals, ("bodies", name, "shape"), self.dimension).outline
+        return tuple(tuple(map(float, corner)) for corner in outline.corners), float(outline.radius)
 
     def _inertia(self, name: str) -> tuple[float, Any]:
         body, path = self.scene.bodies[name], ("bodies", name)
-        if body.body is not None or body.tensor is not None or body.mass is None:
+        of_shape = body.shape is not None and body.inertia is None and body.moments is None
+        if body.body is not None or body.tensor is not None or body.mass is None or of_shape:
             mass, tensor = inertia_of(name, body, self.numerals, self.dimension)
+            if tensor is not None and self.dimension == 2:
+                return float(mass), float(tensor)
             return float(mass), None if tensor is None else [[float(x) for x in row] for row in tensor]
         own = self.number(body.mass, (*path, "mass"))
         if body.inertia is not None:

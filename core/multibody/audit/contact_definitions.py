@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from core.multibody.audit.bodies import Path, Reader
@@ -10,7 +11,8 @@ from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.joints import AXES
-from core.multibody.audit.placement import Undefined
+from core.multibody.audit.outlines import ByCorners, OnOutline
+from core.multibody.audit.placement import Place, Undefined
 from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
 from core.multibody.audit.surfaces import Face, Round
 from core.multibody.language.contacts import Contact, Rolling
@@ -51,20 +53,47 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
         both = (first,) if other is None else (first, other)
         return Stop(name, both, first, other, limit, 1 if least else -1, touch)
     if connection.place is None:
-        a, b = (reader.place(getattr(connection, end), (*path, end)) for end in "ab")
-        radii = (reader.rim(connection.a), reader.rim(connection.b))
-        return OnRound(name, (*a.bodies, *b.bodies), Round(a, b, radii), touch)
-    place, radius, on = (
-        reader.place(connection.place, (*path, "place")),
-        reader.rim(connection.place),
-        connection.surface,
-    )
+        a, b = (reader.corners(getattr(connection, end), (*path, end)) for end in "ab")
+        return _by_corners(name, [*_between(name, a, b, touch)])
+    own, on = reader.corners(connection.place, (*path, "place")), connection.surface
     where = (*path, "on")
     at = reader.place(on["at"], (*where, "at"))
-    bodies = (*place.bodies, *at.bodies)
     if "radius" in on:
-        return OnRound(name, bodies, Round(place, at, (radius, reader.number(on["radius"], (*where, "radius")))), touch)
-    return OnFace(name, bodies, place, radius, _face(reader, on, where), touch)
+        around = ((at,), reader.number(on["radius"], (*where, "radius")))
+        return _by_corners(name, [*_between(name, own, around, touch)])
+    face = _face(reader, on, where)
+    return _by_corners(name, [OnFace(name, (*p.bodies, *at.bodies), p, own[1], face, touch) for p in own[0]])
+
+
+Corners = tuple[tuple[Place, ...], float]
+"""Corners of an outline, and its radius (m)."""
+
+
+def _between(name: str, a: Corners, b: Corners, touch: Touch) -> Iterator[OnRound | OnOutline]:
+    """Yield the contacts of two outlines by the corners of the first, then those of the second."""
+    if b[1] < 0.0 or (len(a[0]) == 1 and len(b[0]) == 1):
+        for place in a[0]:
+            yield OnRound(name, (*place.bodies, *b[0][0].bodies), Round(place, b[0][0], (a[1], b[1])), touch)
+        return
+    pairs = [(a, b), (b, a)] if len(b[0]) > 1 else [(b, a)]
+    for own, other in pairs:
+        count = len(own[0])
+        for i, place in enumerate(own[0] if len(other[0]) > 1 else ()):
+            bodies = (*place.bodies, *other[0][0].bodies)
+            beside = (own[0][i - 1], own[0][(i + 1) % count]) if count > 1 and own[1] + other[1] == 0.0 else ()
+            yield OnOutline(name, bodies, place, other[0], (own[1], other[1]), touch, beside)
+
+
+def _by_corners(name: str, corners: Sequence[OnFace | OnRound | OnOutline]) -> Definition:
+    """Return the contact of a shape, each of whose corners has a name of its own if there are several."""
+    if len(corners) == 1:
+        return corners[0]
+    numbered = []
+    for i, one in enumerate(corners):
+        own = f"{name}.{i + 1}"
+        friction = tuple(f"{own}{force[len(name) :]}" for force in one.touch.friction)
+        numbered.append(replace(one, name=own, touch=replace(one.touch, friction=friction)))
+    return ByCorners(name, corners[0].bodies, tuple(numbered))
 
 
 @definition_of.register

@@ -49,6 +49,11 @@ class Definition:
     name: str
     bodies: tuple[str, ...]
 
+    @property
+    def members(self) -> tuple[Definition, ...]:
+        """The definitions of which it consists, each with forces of its own: itself, if it is one."""
+        return (self,)
+
     @cached_property
     def arm(self) -> float:
         """Largest offset of its places from centres of mass, or component of a place of the ground (m)."""

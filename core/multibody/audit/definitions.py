@@ -93,7 +93,7 @@ def description_of(scene: Scene, instead: Mapping[Path, float] | None = None) ->
     undefined: dict[str, str] = {}
     for i, (name, connection) in enumerate(zip(scene.names(), scene.connections, strict=True)):
         try:
-            found.append(definition_of(connection, reader, name, ("connections", i)))
+            found.extend(definition_of(connection, reader, name, ("connections", i)).members)
         except Undefined as missing:
             undefined[name] = missing.what
     return Description(reader.dimension, reader.gravity, reader.bodies, tuple(found), undefined, reader.start)

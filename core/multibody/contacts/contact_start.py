@@ -12,6 +12,7 @@ from core.multibody.contacts.contact_responses import rate_along
 from core.multibody.contacts.projection import project
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.table.description import Described
+from core.multibody.table.facing import facing
 from core.multibody.table.table import Row
 
 TOUCHING = 1e-9
@@ -45,9 +46,13 @@ def assemble_contacts(base: Described) -> ContactStart:
     """
     table, paths, unilateral = base.measures.table, base.paths, base.measures.unilateral
     moved = list(dict.fromkeys([*base.measures.coordinates.rounded, *assemble_places(table, paths)]))
+    unilateral[:] = facing(unilateral, table.q, table.v, TOUCHING)
     touching = []
     for i, one in enumerate(unilateral):
         gap, scale = evaluated(one.gap, table.q), size(one.gap, table.q)
+        if one.facets and not one.region:
+            # It is above an edge.
+            continue
         if is_zero(gap) or bool(abs(gap) < TOUCHING * scale):
             touching.append(i)
             if not is_zero(gap):

@@ -176,7 +176,18 @@ def forces_of(unilateral: Sequence[Unilateral], states: Sequence[State], phase: 
             elif row is not None and state.sense:
                 terms = [(row, constant(-state.sense * one.kinetic))]
             found.append(Force(names[1], "N", terms))
-    return found
+    return [*found, *_sums(unilateral, found)]
+
+
+def _sums(unilateral: Sequence[Unilateral], forces: Sequence[Force]) -> list[Force]:
+    """Return the forces of shapes: the sums of those of their corners."""
+    found: dict[str, Force] = {}
+    by_name = {force.name: force for force in forces}
+    for one in unilateral:
+        for name in force_names(one) if one.whole is not None else ():
+            total = f"{one.whole}{name[len(one.name) :]}"
+            found.setdefault(total, Force(total, one.unit)).terms.extend(by_name[name].terms)
+    return list(found.values())
 
 
 def _in_space(one: Unilateral, state: State, phase: PhaseTable, number: int, names: Sequence[str]) -> list[Force]:

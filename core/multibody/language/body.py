@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from core.bodies import Body
 from core.multibody.language.written import Number, Vector
@@ -31,7 +32,16 @@ class SceneBody:
     body : Body of core.bodies, optional
         In space, in place of `mass` and `moments`: its mass properties, about its centre of mass.
     radius : number, optional
-        Of the rim on which it rolls and around which strings wind (m).
+        Of the rim on which it rolls and around which strings wind (m); without it that of a disc or ball about the
+        centre of mass.
+    shape : mapping, optional
+        What touches: ``{"kind": "disc" | "ball", "radius"}``, ``{"kind": "box", "width", "height", "depth"}`` (in the
+        plane without depth), ``{"kind": "polygon", "corners"}`` (convex, counter-clockwise),
+        ``{"kind": "capsule", "radius", "length"}`` (between the centres of its caps),
+        ``{"kind": "cylinder", "radius", "height"}``, ``{"kind": "ellipsoid", "semi_axes"}``, each with its centre `at`
+        in body axes, at the centre of mass if left out. In the plane the width of a box and the length of a capsule lie
+        along the first axis of the body; in space the axes of discs and cylinders and the length of capsules along the
+        third. A mass without inertia is that of the homogeneous solid.
     angle : number, optional
         In the plane: of the body's first axis, counter-clockwise (rad).
     axes : three vectors, optional
@@ -50,7 +60,23 @@ class SceneBody:
     tensor: Sequence[Vector] | None = None
     body: Body | None = None
     radius: Number | None = None
+    shape: Mapping[str, Any] | None = None
     angle: Number | None = None
     axes: Sequence[Vector] | None = None
     angular_velocity: Number | Vector | None = None
     places: Mapping[str, Vector] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def rigid(self) -> bool:
+        """Whether it has inertia of its own or of its shape, and so an orientation."""
+        own = (self.inertia, self.moments, self.tensor, self.body, self.shape)
+        return any(entry is not None for entry in own)
+
+    @property
+    def rim(self) -> Number | None:
+        """The radius on which it rolls: its own, or that of a disc or ball whose centre is the centre of mass."""
+        if self.radius is not None or not isinstance(self.shape, Mapping):
+            return self.radius
+        at = self.shape.get("at") or ()
+        centred = isinstance(at, Sequence) and all(x == 0 for x in at)
+        return self.shape.get("radius") if centred and self.shape.get("kind") in ("disc", "ball") else None

@@ -37,7 +37,12 @@ class Surroundings:
     def rim(self, place: object) -> bool:
         """Return whether a place is a body with a radius: a drum or wheel of the plane, a ball of space."""
         body = self.bodies.get(place) if isinstance(place, str) else None
-        return body is not None and body.radius is not None
+        return body is not None and body.rim is not None
+
+    def outlined(self, place: object) -> bool:
+        """Return whether a place is a body that stands for its whole shape, which has more than a rim."""
+        body = self.bodies.get(place) if isinstance(place, str) else None
+        return body is not None and body.shape is not None and body.rim is None
 
     def concentric(self, a: object, b: object) -> bool:
         """Return whether two bodies of the plane have one centre, at which a connection joins them."""
@@ -47,7 +52,7 @@ class Surroundings:
         for place in (a, b):
             name, _, spot = place.partition(".") if isinstance(place, str) else ("", "", "")
             body = self.bodies.get(name)
-            if body is None or body.inertia is None or spot not in ("", "centre"):
+            if body is None or not body.rigid or spot not in ("", "centre"):
                 return False
             centres.append(self.numerals.vector(body.at, ("bodies", name, "at"), 2))
         return all(is_zero(x - y) for x, y in zip(*centres, strict=True))

@@ -61,12 +61,13 @@ class Rolling(SurfaceConnection):
 class Contact(SurfaceConnection):
     """What touches pushes and does not pull.
 
-    `place`, a point or a body with a rim, does not pass `on`: a face ``{at, slope}``, free on the left of its slope, or
-    a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. In space a face is a plane
-    ``{at, normal}``, free on the side of its normal, and a circle is a sphere. Or `a` does not pass `b`, of which one
-    has a rim at least. Or with `measure` "turn", the turn of `a` relative to `b` stays `at_least` or
-    `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order` says, where several
-    impacts at once leave their outcome open, in which order they happen: those of equal order together.
+    `place`, a point or a body with a rim or a shape, does not pass `on`: a face ``{at, slope}``, free on the left
+    of its slope, or a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. In space
+    a face is a plane ``{at, normal}``, free on the side of its normal, and a circle is a sphere. Or `a` does not
+    pass `b`, of which one has a rim or a shape at least. Or with `measure` "turn", the turn of `a` relative to `b`
+    stays `at_least` or `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order`
+    says, where several impacts at once leave their outcome open, in which order they happen: those of equal order
+    together.
     """
 
     place: Place | None = None
@@ -87,3 +88,11 @@ class Contact(SurfaceConnection):
     def turns(self, place: object, surroundings: Surroundings) -> bool:
         """See `SurfaceConnection.turns`; in space a ball alone has friction that turns it."""
         return surroundings.plane or (self.friction is not None and surroundings.rim(place))
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        yield from super().aspects(surroundings)
+        for place in (self.place, self.a, self.b):
+            if surroundings.outlined(place):
+                for aspect in ATTITUDE:
+                    yield place, aspect

@@ -12,6 +12,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.language.body import SceneBody
 from core.multibody.language.numerals import Numerals
+from core.multibody.language.shapes import shape_of
 from core.quantities import members_of
 
 
@@ -50,10 +51,26 @@ def inertia_of(name: str, body: SceneBody, numerals: Numerals, dimension: int) -
             for j in range(i):
                 if not is_zero(tensor[i][j] - tensor[j][i]):
                     raise InvalidParameter((*path, "tensor"), "be symmetric")
+    elif body.shape is not None:
+        return mass, _of_shape(name, mass, body.shape, numerals, dimension)
     else:
         return mass, None
     _check_matter(tensor, (*path, "moments" if body.moments is not None else "tensor"))
     return mass, tensor
+
+
+def _of_shape(name: str, mass: Ball, written: Mapping[str, Any], numerals: Numerals, dimension: int) -> Any:
+    """Return the inertia of a homogeneous solid of a shape, as three rows in space."""
+    path = ("bodies", name, "shape")
+    shape = shape_of(written, numerals, path, dimension)
+    if not shape.centred:
+        raise InvalidParameter(
+            path,
+            "have its centroid at the centre of mass where no inertia is given: that of a homogeneous solid is meant",
+            remedy=f"move it by {[-float(x) for x in shape.centroid]}, or give the inertia",
+        )
+    own = [mass * x for x in shape.moments]
+    return own[0] if dimension == 2 else [[own[i] if i == j else ZERO for j in range(3)] for i in range(3)]
 
 
 def _catalogued(body: Any, path: Path) -> tuple[Ball, Any]:

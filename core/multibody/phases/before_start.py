@@ -41,6 +41,12 @@ def follow_backwards(motion: PhaseMotion, times: Floats) -> None:
             path=("times",),
             remedy="ask for times from the start on",
         )
+    if any(one.facets for one in phase.unilateral):
+        raise NotApplicable(
+            "times before the start are not answered where edges and corners of shapes may meet",
+            path=("times",),
+            remedy="ask for times from the start on",
+        )
     # The velocities that are given are those before an impact, and the first phase has those after it.
     names = [name for number, name, _ in motion.impacts if number == 0]
     event = None

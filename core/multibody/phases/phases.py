@@ -36,6 +36,7 @@ from core.multibody.phases.turning_slip import begins_at_once, turns
 from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
+from core.multibody.table.facing import facing, is_on_a_corner
 from core.systems.trajectory import ImpactErrors, MotionEvent
 
 MOST_EVENTS = 500
@@ -147,6 +148,10 @@ class _Run:
         """Resolve what approaches; return whether that is decided."""
         table, tracks = self.base.measures.table, self.tracks
         for _ in range(_STILL):
+            problem = self._face()
+            if problem is not None:
+                self._stop(problem)
+                return False
             q, v = tracks.wide()
             hit = approaching(self.unilateral, self.touching, q, v)
             if not hit:
@@ -182,6 +187,27 @@ class _Run:
                     self._event("settle", one.name)
         self._stop(Problem("no-progress", "impacts follow one another without end", ()))
         return False
+
+    def _face(self) -> Problem | None:
+        """Choose what the corners of shapes may meet from the present state on; what leaves an edge touches no more."""
+        q, v = self.tracks.wide()
+        found = facing(self.unilateral, q, v)
+        touching = set(self.touching)
+        for i, (one, old) in enumerate(zip(found, self.unilateral, strict=True)):
+            if one.facets and not (one.region and (one.gap is old.gap or is_zero(evaluated(one.gap, q)))):
+                touching.discard(i)
+            elif one.gap is not old.gap:
+                touching.add(i)
+        self.unilateral, self.touching = found, sorted(touching)
+        for i in self.touching:
+            if is_on_a_corner(found[i], q, v):
+                return Problem(
+                    "corner-on-corner",
+                    "two corners meet: in which direction they push one another is not determined",
+                    (found[i].name,),
+                    decided_by="a radius of one of them, as capsules have, or another start",
+                )
+        return None
 
     def _settling(self, share: float, limit: float) -> tuple[list[Unilateral], list[int]]:
         """Let what bounces so little come to rest in no time; return the measures, and which of them do.
@@ -296,7 +322,9 @@ class _Run:
         if wide or not tracks.exact:
             tracks.part(phase.still, phase.share, FLOOR)
         phase.end = tracks.time
-        self._meet(phase, first.watch.number)
+        # Where a facet ends, or a height above an edge beyond its ends, another is met, and not necessarily touched.
+        facets = self.unilateral[first.watch.number].facets
+        self._meet(phase, -1 if first.watch.what == "region" or facets else first.watch.number)
         return True
 
     def _meet(self, phase: Phase, ending: int) -> None:

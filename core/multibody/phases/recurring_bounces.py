@@ -181,6 +181,8 @@ def _alone(unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequen
     around = [_within(x, length * (abs(v) + y)) for x, v, y in zip(here, tail.v, change, strict=True)]
     rates = [_within(v, y) for v, y in zip(tail.v, change, strict=True)]
     for j, (one, state) in enumerate(zip(unilateral, phase.states, strict=True)):
+        if not all(evaluated(bound, around) > 0 for bound in one.region):
+            return False
         if j == i:
             continue
         if state is State.OPEN:

@@ -24,21 +24,22 @@ class Watch:
     ----------
     number : int
         Of the unilateral measure.
-    what : {"gap", "push", "grip", "slip", "length"}
-        The last is that of a part of a string, a spring or another line: where it is zero, the motion ends.
+    what : {"gap", "push", "grip", "slip", "length", "region"}
+        A length is that of a part of a string, a spring or another line: where it is zero, the motion ends. A region is
+        that in which a corner meets a facet of another shape.
     admissible : AdmissibleForce or None
         What has to be positive, for "push" and "grip".
     """
 
     number: int
-    what: Literal["gap", "push", "grip", "slip", "length"]
+    what: Literal["gap", "push", "grip", "slip", "length", "region"]
     one: Unilateral
     sense: int = 1
     admissible: AdmissibleForce | None = None
 
     def series(self, motion: Expansion) -> Series:
         """Return it along a motion."""
-        if self.what in ("gap", "length"):
+        if self.what in ("gap", "length", "region"):
             return motion.of(self.one.gap)
         if self.what == "slip":
             return [self.sense * x for x in motion.of_rates(self.one.slip or {})]
@@ -52,7 +53,7 @@ class Watch:
 
     def along(self, pieces: Pieces) -> Curve:
         """Return it along a motion in pieces."""
-        if self.what in ("gap", "length"):
+        if self.what in ("gap", "length", "region"):
             return pieces.of(self.one.gap)
         if self.what == "slip":
             return pieces.nothing().plus(self.sense * ONE, pieces.of_rates(self.one.slip or {}))
@@ -76,6 +77,9 @@ def watches(unilateral: Sequence[Unilateral], states: Sequence[State], phase: Ph
         what: Literal["push", "grip"] = "grip" if force.grips else "push"
         found.append(Watch(force.number, what, unilateral[force.number], admissible=force))
     found.extend(Watch(i, "slip", unilateral[i], states[i].sense) for i in closed if states[i].sense)
+    found.extend(
+        Watch(i, "region", Unilateral(one.name, bound)) for i, one in enumerate(unilateral) for bound in one.region
+    )
     return found
 
 

@@ -92,6 +92,30 @@ class Limit:
 
 
 @dataclass(frozen=True)
+class Facet:
+    """A part of an outline that a corner may meet: an edge between its ends, or the arc about a corner.
+
+    Attributes
+    ----------
+    gap : polynomial
+    slip : linear form in the rates, or None
+    region : tuple of polynomial
+        At or above zero where this is the part that is nearest.
+    sides : tuple of (polynomial, polynomial)
+        Of each edge that ends at the corner itself, its components along the outward normal and along an edge on which
+        the corner lies: the first are at or above zero where its outline is on the free side.
+    edge : bool
+        Whether a gap above zero is enough to say that nothing touches, wherever it is.
+    """
+
+    gap: Poly
+    slip: LinearForm | None
+    region: tuple[Poly, ...] = ()
+    sides: tuple[tuple[Poly, Poly], ...] = ()
+    edge: bool = False
+
+
+@dataclass(frozen=True)
 class Unilateral:
     """A measure that stays at or above zero: a contact, a stop, a string.
 
@@ -113,6 +137,14 @@ class Unilateral:
         Whether sticking is rolling.
     order : ball or None
         Place in the order of simultaneous impacts.
+    whole : str or None
+        The connection whose forces are the sums of those of its corners, of which this is one.
+    facets : tuple of Facet
+        What a corner may meet of another shape; `gap` and `slip` are those of one of them.
+    region : tuple of polynomial
+        At or above zero as long as that one is what it may meet.
+    first : bool
+        Whether it meets the ends of edges: where two corners meet, that of the first shape takes the force.
     """
 
     name: str
@@ -128,6 +160,10 @@ class Unilateral:
     order: Ball | None = None
     across: LinearForm | None = None
     tangents: tuple[Sequence[Ball], Sequence[Ball]] | None = None
+    whole: str | None = None
+    facets: tuple[Facet, ...] = ()
+    region: tuple[Poly, ...] = ()
+    first: bool = True
 
     @property
     def slips(self) -> list[LinearForm]:

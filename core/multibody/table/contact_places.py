@@ -2,17 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
 from core.multibody.language.contacts import Contact
+from core.multibody.language.shapes import Corner
 from core.multibody.table.frames import Frame, Point
 from core.multibody.table.measures import Measures
 
-Rim = tuple[Point, Ball, Frame | None]
-"""Centre and radius of a body with a rim and its frame, or a place with the radius 0."""
+
+@dataclass(frozen=True)
+class Side:
+    """One of two things that touch: corners with a radius, of which a place has one with the radius 0.
+
+    Attributes
+    ----------
+    points : sequence of Point
+        The corners.
+    offsets : sequence of tuple of ball
+        The same in body axes from the centre of mass (m); of the ground, its coordinates.
+    radius : ball
+        m; of a hollow below zero.
+    frame : Frame or None
+        Of a body that is named as a whole.
+    """
+
+    points: Sequence[Point]
+    offsets: Sequence[Corner]
+    radius: Ball
+    frame: Frame | None = None
+
+    @property
+    def body(self) -> str | None:
+        """The body that carries it; None of the ground."""
+        return self.points[0].body
+
+    @property
+    def round(self) -> bool:
+        """Whether it has a rim, so that sticking is rolling."""
+        return not is_zero(self.radius)
+
+    @property
+    def single(self) -> bool:
+        """Whether it is a point, a disc or a ball."""
+        return len(self.points) == 1
 
 
 def refuse_limits(connection: Contact, path: Path) -> None:
@@ -38,14 +74,34 @@ def is_on(connection: Contact, path: Path, also: str = "") -> bool:
     raise InvalidParameter(path, f"have place and on, or a and b{also}")
 
 
-def rim(measures: Measures, place: Any, path: Path) -> Rim:
-    """Return centre and radius of a body with a rim, or a place with the radius 0."""
-    point = measures.coordinates.point(place, path)
-    frame = measures.coordinates.frames.get(place) if isinstance(place, str) else None
-    return point, ZERO if frame is None or frame.radius is None else frame.radius, frame
+def side_of(measures: Measures, place: Any, path: Path) -> Side:
+    """Return what a body touches with as a whole, or a place with the radius 0.
+
+    Raises
+    ------
+    InvalidParameter
+        For a shape whose contacts are not answered yet.
+    """
+    coordinates = measures.coordinates
+    point = coordinates.point(place, path)
+    frame = coordinates.frames.get(place) if isinstance(place, str) else None
+    if frame is None or (frame.shape is None and frame.radius is None):
+        return Side([point], [()], ZERO, frame)
+    if frame.shape is None:
+        assert frame.radius is not None
+        return Side([point], [(ZERO,) * measures.dimension], frame.radius, frame)
+    outline = frame.shape.outline
+    if not outline.corners:
+        raise InvalidParameter(
+            path,
+            f"be of another shape: contacts of a {frame.shape.kind} in space are not answered yet",
+            remedy="name a place of the body, or take a ball, a box or a capsule",
+        )
+    points = [coordinates.carried(frame.name, corner, path) for corner in outline.corners]
+    return Side(points, outline.corners, outline.radius, frame)
 
 
-def place_on(measures: Measures, connection: Contact, path: Path) -> tuple[Rim, Point, Mapping[str, Any]]:
+def place_on(measures: Measures, connection: Contact, path: Path) -> tuple[Side, Point, Mapping[str, Any]]:
     """Return what touches, a point of what it touches, and the rest of the description of that.
 
     Raises
@@ -53,35 +109,35 @@ def place_on(measures: Measures, connection: Contact, path: Path) -> tuple[Rim, 
     InvalidParameter
         Where both are fixed, or belong to one body.
     """
-    first = rim(measures, connection.place, (*path, "place"))
+    first = side_of(measures, connection.place, (*path, "place"))
     where, on = (*path, "on"), connection.on
     if not isinstance(on, Mapping) or "at" not in on:
         raise InvalidParameter((*where, "at"), "be given")
     at = measures.coordinates.point(on["at"], (*where, "at"))
-    if first[0].body is None and at.body is None:
+    if first.body is None and at.body is None:
         face = "face" if measures.dimension == 2 else "plane"
         raise InvalidParameter(
             (*path, "place"),
             "belong to a body: a fixed point does not move on what is fixed",
             remedy=f'name a body or a place of one, as "rod.end"; or let the {face} in "on" be that of a body',
         )
-    if at.body == first[0].body:
+    if at.body == first.body:
         raise InvalidParameter((*where, "at"), "belong to another body than the place")
     return first, at, {key: value for key, value in on.items() if key != "at"}
 
 
-def two_rims(measures: Measures, connection: Contact, path: Path) -> tuple[Rim, Rim]:
-    """Return the two rims of a contact.
+def two_sides(measures: Measures, connection: Contact, path: Path) -> tuple[Side, Side]:
+    """Return the two sides of a contact.
 
     Raises
     ------
     InvalidParameter
         Where both are fixed, or belong to one body.
     """
-    a, b = (rim(measures, getattr(connection, end), (*path, end)) for end in "ab")
-    if a[0].body is not None and a[0].body == b[0].body:
+    a, b = (side_of(measures, getattr(connection, end), (*path, end)) for end in "ab")
+    if a.body is not None and a.body == b.body:
         raise InvalidParameter((*path, "b"), "belong to another body than a")
-    if a[0].body is None and b[0].body is None:
+    if a.body is None and b.body is None:
         raise InvalidParameter(path, "connect a body")
     return a, b
 

@@ -26,6 +26,7 @@ from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.language.shapes import shape_of
 from core.multibody.language.written import GROUND
 from core.multibody.table.frames import Frame, Given, Point
 from core.multibody.table.spatial_orientation import SpatialOrientation
@@ -73,6 +74,11 @@ class Coordinates:
             rule = f'name a place of "{body}"; "{spot[:80]}" is none'
             raise InvalidParameter(path, rule, remedy=near_and_all(spot, ["centre", *frame.places], "places"))
         return Point(self._offset(frame, centre, frame.places[spot], path), body)
+
+    def carried(self, body: str, offset: Sequence[Ball], path: Path) -> Point:
+        """Return the point of a body at an offset from its centre of mass, in body axes (m)."""
+        frame = self.frames[body]
+        return Point(self._offset(frame, [coordinate(i) for i in frame.position], offset, path), body)
 
     @property
     def positions(self) -> list[list[int]]:
@@ -155,6 +161,10 @@ class Coordinates:
                 table.add_mass(i, i, mass)
                 if not is_zero(pull):
                     table.add_load(i, mass * pull)
+        if body.shape is not None:
+            frame.shape = shape_of(body.shape, numerals, (*path, "shape"), self.dimension)
+            if body.rim is not None and frame.shape.round:
+                frame.radius = frame.shape.outline.radius
         if body.radius is not None:
             frame.radius = numerals.number(body.radius, (*path, "radius"))
             if not frame.radius > 0:

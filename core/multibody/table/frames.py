@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from core.errors import Path
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly
+from core.multibody.language.shapes import Shape
 
 
 @dataclass
@@ -28,6 +29,8 @@ class Frame:
         In space, of a body that rolls: three coordinates whose rates are its angular velocity in space.
     start_axes : three lists of balls, or None
         Of a ball, which has no other coordinates: the body axes at the start.
+    shape : Shape or None
+        What touches where the body as a whole does.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Frame:
     spin_energy: Ball = ZERO
     orients: bool = False
     places: dict[str, tuple[Ball, ...]] = field(default_factory=dict)
+    shape: Shape | None = None
 
 
 @dataclass(frozen=True)
