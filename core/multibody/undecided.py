@@ -18,12 +18,12 @@ Code = Literal[
     "no-impact",
     "energy-gain",
     "grazing-contact",
+    "corner-on-corner",
     "several-onsets",
     "turning-onset",
     "no-progress",
     "event-limit",
     "lost-event",
-    "corner-on-corner",
 ]
 
 DOCUMENT = "docs/physics/undecided.md"
