@@ -18,19 +18,16 @@ class NamedEvent(Request):
     nth: int = Field(default=1, ge=1, description="Which one of these, in the order of the answer.")
 
 
-class EventFigure(Request):
-    """The time of an event, wherever it stands in the list of events."""
+class FigureOfAList(Request):
+    """A figure that does not stand at one place of the answer: one of its fields is given."""
 
-    event: NamedEvent
-
-
-class CountFigure(Request):
-    """How many entries a list of the answer has."""
-
-    count: str = Field(description="JSON pointer to the list.")
+    event: NamedEvent | None = Field(
+        default=None, description="The time of an event, wherever it stands in the list of events."
+    )
+    count: str | None = Field(default=None, description="How many entries the list at this JSON pointer has.")
 
 
-WrittenFigure = Annotated[str | EventFigure | CountFigure, SkipValidation()]
+WrittenFigure = Annotated[str | FigureOfAList, SkipValidation()]
 """A JSON pointer into the answer, such as ``"/period"``, or one of the objects."""
 
 
