@@ -18,6 +18,7 @@ PAGES_ELSEWHERE = {
     "clients/lms/prairielearn/README.md": "prairielearn.md",
     "clients/lms/gradescope/README.md": "gradescope.md",
     "clients/lms/moodle/README.md": "moodle.md",
+    "clients/lms/lti/README.md": "lti.md",
 }
 """Pages outside of docs/, and where they are on the site."""
 
@@ -39,6 +40,7 @@ def navigation() -> list[Any]:
         {"Grade in PrairieLearn": "prairielearn.md"},
         {"Grade in Gradescope": "gradescope.md"},
         {"Grade in Moodle": "moodle.md"},
+        {"Grade in Canvas (LTI)": "lti.md"},
         {"A published solution with mistakes": "homework.md"},
         {"Study many variations": "studies.md"},
         {"Read and choose the accuracy": "accuracy.md"},

@@ -20,19 +20,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PLATFORMS = ROOT / "clients" / "lms"
-QUESTIONS = ("1f", "1g", "problem-1")
 PERIOD = 6.2831853
-
-
-@pytest.fixture(scope="module")
-def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder: Path = tmp_path_factory.mktemp("platforms")
-    files = [str(ROOT / "examples" / "assessments" / f"{name}.json") for name in QUESTIONS]
-    for output in ("bundle", "bundle.zip"):
-        command = [sys.executable, "-m", "clients.offline", *files, "--output", str(folder / output)]
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=250)
-        assert done.returncode == 0, done.stderr
-    return folder / "bundle"
 
 
 def deployed(folder: Path, bundle: Path, *files: str) -> Path:

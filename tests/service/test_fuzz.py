@@ -5,7 +5,6 @@ The environment variable POLHODE_FUZZ is the number of questions for each endpoi
 
 from __future__ import annotations
 
-import copy
 import json
 import os
 from typing import Any
@@ -18,29 +17,12 @@ from hypothesis import strategies as st
 from service.routing import PostRoute
 from tests.service.conftest import inline_service
 from tests.service.http.test_dispatch import receiving, scope, sending
+from tests.service.spoilt_questions import NUMBERS, OTHERS, WAYS, spoilt
 
 EXAMPLES = int(os.environ.get("POLHODE_FUZZ", "12"))
 SERVICE = inline_service(max_samples=500, max_evaluations=20_000)
 QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 
-NUMBERS = [
-    0,
-    -0.0,
-    1,
-    -1,
-    1e-300,
-    5e-324,
-    1e300,
-    -1e300,
-    1e154,
-    1e-160,
-    1.7976931348623157e308,
-    2**53 + 1,
-    3.5,
-    1e9,
-    -7,
-]
-OTHERS: list[Any] = [None, True, "", "meaningful", "NaN", [], {}, [1.0, 2.0, 3.0], [[1, 2, 3]], {"kind": "ball"}, "1e5"]
 VALUES = st.one_of(
     st.sampled_from(NUMBERS),
     st.floats(allow_nan=False, allow_infinity=False),
@@ -48,42 +30,10 @@ VALUES = st.one_of(
     st.sampled_from(OTHERS),
 )
 SPOILS = st.lists(
-    st.tuples(st.integers(0, 10_000), st.sampled_from(["set", "set", "scale", "drop", "twin", "rename"]), VALUES),
+    st.tuples(st.integers(0, 10_000), st.sampled_from(WAYS), VALUES),
     min_size=1,
     max_size=4,
 )
-
-
-def places(node: Any) -> list[tuple[Any, Any]]:
-    """Return every (container, key) of a document."""
-    keys = list(node) if isinstance(node, dict) else list(range(len(node))) if isinstance(node, list) else []
-    found = [(node, key) for key in keys]
-    for key in keys:
-        found += places(node[key])
-    return found
-
-
-def spoilt(question: Any, spoils: list[tuple[int, str, Any]]) -> Any:
-    """Return a question with a few changes."""
-    document = json.loads(json.dumps(question))
-    for where, how, value in spoils:
-        choices = places(document)
-        if not choices:
-            break
-        container, key = choices[where % len(choices)]
-        old = container[key]
-        number = isinstance(old, (int, float)) and isinstance(value, (int, float))
-        if how == "drop":
-            del container[key]
-        elif how == "twin" and isinstance(container, list):
-            container.insert(key, copy.deepcopy(old))
-        elif how == "rename" and isinstance(container, dict):
-            container[f"{key}s"] = container.pop(key)
-        elif how == "scale" and number and abs(product := float(old) * float(value)) < 1e308:
-            container[key] = product
-        else:
-            container[key] = copy.deepcopy(value)
-    return document
 
 
 def refuse_constant(name: str) -> None:
