@@ -141,8 +141,8 @@ def directions_together(first: Slips, after: Callable[[Slips], Slips | None]) ->
             return []
         off = _angles(assumed, slips)
         ahead = all(c * x + s * y > 0 for (c, s), (x, y) in zip(assumed, slips, strict=True))
-        if step and ahead and all(abs(x) < width for x in off):
-            return [(arb(c, width), arb(s, width)) for c, s in assumed]
+        if step and ahead and all(abs(x.mid()) < width or is_zero(x) for x in off):
+            return _with_widths(assumed, off, after, width)
         change = _newton_step(assumed, off, after) if step > _TURNS and ahead else None
         if change is None:
             assumed = [_unit(*slip) for slip in slips]
@@ -152,16 +152,29 @@ def directions_together(first: Slips, after: Callable[[Slips], Slips | None]) ->
     return None
 
 
+def _with_widths(
+    assumed: Slips, off: Sequence[Ball], after: Callable[[Slips], Slips | None], width: float
+) -> list[Direction] | None:
+    """Return directions that are found, as wide as they are known with the state; None where that is not determined."""
+    widths: list[Ball] = [arb(width)] * len(assumed)
+    if any(x.rad() > width for x in off):
+        change = _newton_step(assumed, off, after)
+        if change is None:
+            return None
+        widths = [arb(width) + 2 * abs(x).upper() for x in change]
+    return [(arb(c, w), arb(s, w)) for (c, s), w in zip(assumed, widths, strict=True)]
+
+
 def _angles(assumed: Slips, slips: Slips) -> list[Ball]:
-    """Return the sines of the angles between slips and the directions assumed, without their widths."""
-    return [
-        arb(((c * y - s * x) / (x * x + y * y).sqrt()).mid()) for (c, s), (x, y) in zip(assumed, slips, strict=True)
-    ]
+    """Return the sines of the angles between slips and the directions assumed."""
+    return [(c * y - s * x) / (x * x + y * y).sqrt() for (c, s), (x, y) in zip(assumed, slips, strict=True)]
 
 
 def _newton_step(assumed: Slips, off: Sequence[Ball], after: Callable[[Slips], Slips | None]) -> list[Ball] | None:
     """Return by what the angles change, None where that is not determined."""
-    small = arb(2.0 ** (-ctx.prec // 2))
+    # Differences are to be above what is known of the slips.
+    known = max(float(x.rad()) for x in off)
+    small = arb(max(2.0 ** (-ctx.prec // 2), known**0.5))
     columns = []
     for j, (c, s) in enumerate(assumed):
         moved = [*assumed[:j], _unit(c - small * s, s + small * c), *assumed[j + 1 :]]
@@ -169,7 +182,7 @@ def _newton_step(assumed: Slips, off: Sequence[Ball], after: Callable[[Slips], S
         if slips is None:
             return None
         # Each angle is counted from the direction that it had before.
-        columns.append([(x - y) / small for x, y in zip(_angles(assumed, slips), off, strict=True)])
+        columns.append([(x.mid() - y.mid()) / small for x, y in zip(_angles(assumed, slips), off, strict=True)])
     n = len(assumed)
     matrix = arb_mat([[columns[j][i] - (1 if i == j else 0) for j in range(n)] for i in range(n)])
     try:
@@ -208,7 +221,9 @@ def _between(
         second, last = following, value
         if near or is_zero(value):
             break
-    return _at(arb(second.mid(), 2.0 ** (_GUARD_OF_AN_ANGLE - ctx.prec)))
+    # As wide as it is known with the state, by the slope between the ends.
+    known = 2 * last.rad() * (ends[1] - ends[0]) / abs(values[1].mid() - values[0].mid())
+    return _at(arb(second.mid(), known + 2.0 ** (_GUARD_OF_AN_ANGLE - ctx.prec)))
 
 
 def _at(angle: Ball) -> Direction:

@@ -28,7 +28,10 @@ def plane_axes(moving: Sequence[Vector], gravity: Vector) -> list[list[Ball]] | 
     gravity : vector
         Its opposite, or what of it lies in the plane, is the third axis.
     """
-    seen = [unit(vector, ()) for vector in moving if not _vanishes(vector)]
+    moves = [vector for vector in moving if not _vanishes(vector)]
+    if not all(_has_direction(vector) for vector in moves):
+        return None
+    seen = [unit(vector, ()) for vector in moves]
     up = None if _vanishes(gravity) else unit([-x for x in gravity], ())
     normal = _normal(seen)
     if normal is None and up is not None:
@@ -62,7 +65,11 @@ def line_axes(changes: Sequence[Vector]) -> list[list[Ball]] | None:
         Derivatives by time of one vector, in the plane or in space.
     """
     seen = [vector for vector in changes if not _vanishes(vector)]
-    if not seen or not all(is_zero(x) for vector in seen[1:] for x in _across(seen[0], vector)):
+    if (
+        not seen
+        or not _has_direction(seen[0])
+        or not all(is_zero(x) for vector in seen[1:] for x in _across(seen[0], vector))
+    ):
         return None
     along = unit(seen[0], ())
     return _oblique([along, *perpendicular(along, ())])
@@ -157,6 +164,11 @@ def _within(vector: Vector, normal: Vector) -> list[Ball]:
     """Return the unit vector along what of a vector lies in the plane of a normal."""
     along = sum((x * y for x, y in zip(vector, normal, strict=True)), ZERO)
     return unit([x - along * y for x, y in zip(vector, normal, strict=True)], ())
+
+
+def _has_direction(vector: Vector) -> bool:
+    """Return whether a vector is longer than it is wide: some components may not be told from zero, others be tiny."""
+    return bool(sum((x * x for x in vector), ZERO) > 0)
 
 
 def _vanishes(vector: Vector) -> bool:

@@ -340,3 +340,29 @@ def test_a_ladder_turned_with_its_gravity_moves_alike(turn: str, cosine: str, fr
     x, y = column(level, "l.position").values[0]
     expected = [x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)]
     assert column(turned, "l.position").values[0] == pytest.approx(expected, abs=1e-13)
+
+
+@pytest.mark.parametrize(("speed", "along"), [((2, 0, 0), (1, 0)), (("1.2", "1.6", 0), (0.6, 0.8))])
+def test_a_table_that_a_spring_draws_back_slides_back_at_once(speed: Any, along: tuple[float, float]) -> None:
+    """Four legs begin to slide at once, from a state that is known to its error: x'' = -4 x -+ 1."""
+    corners = [("0.5", "0.3"), ("-0.5", "0.3"), ("-0.5", "-0.3"), ("0.5", "-0.3")]
+    table = {
+        "mass": 10,
+        "moments": [1, 1.5, 2],
+        "at": [0, 0, "0.5"],
+        "velocity": speed,
+        "angular_velocity": [0, 0, 0],
+        "places": {f"f{k}": [x, y, "-0.5"] for k, (x, y) in enumerate(corners)},
+    }
+    floor = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    legs = [{"kind": "contact", "place": f"t.f{k}", "on": floor, "friction": "0.1"} for k in range(4)]
+    spring = {"kind": "spring", "a": "t", "b": [0, 0, "0.5"], "stiffness": 40, "rest_length": 0}
+    scene = {"gravity": [0, 0, -10], "bodies": {"t": table}, "connections": [*legs, spring]}
+    answer = solve_scene(read(scene), [0.2, 1.0], ("trajectory",))
+    assert answer.problem is None
+    back = math.atan(4) / 2
+    farthest = math.hypot(0.25, 1) - 0.25
+    expected = [0.25 * math.cos(0.4) + math.sin(0.4) - 0.25, 0.25 + (farthest - 0.25) * math.cos(2 * (1 - back))]
+    place = np.asarray(column(answer, "t.position").values)
+    assert np.allclose(place[:, :2], np.outer(expected, along), rtol=0, atol=1e-15)
+    assert np.all(place[:, 2] == 0.5)

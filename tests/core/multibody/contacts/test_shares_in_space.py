@@ -247,6 +247,15 @@ def test_directions_of_onsets_that_depend_on_one_another_converge_or_are_none() 
         # Tangents are (9 t + 1)/81 of one another: t = 9/80 and 1/80.
         assert abs(s / c - arb(9) / 80) < 1e-60
         assert abs(y / x - arb(1) / 80) < 1e-60
+        # Of slips that are known to 1e-24, directions are known so, and not better.
+        wide = directions_together(
+            [(arb(1), arb(0))] * 2, lambda ways: [(x + arb(0, 1e-24), y + arb(0, 1e-24)) for x, y in after(ways)]
+        )
+        assert wide is not None
+        for (c, s), (x, y) in zip(wide, found, strict=True):
+            assert 1e-24 < s.rad() < 1e-22
+            assert c.overlaps(x)
+            assert s.overlaps(y)
     assert directions_together([(arb(0), arb(0))], after) == []
     assert directions_together([(arb(1), arb(0))], lambda _: None) == []
     assert directions_together([(arb(1), arb(0))], lambda ways: [(-ways[0][1], ways[0][0])]) is None
