@@ -19,6 +19,7 @@ from core.bodies import Body
 from core.errors import InvalidParameter, Path
 from core.multibody.language.body import SceneBody as DescribedBody
 from core.multibody.language.connection import Connection
+from core.multibody.language.contacts import ImpactLaw, Simultaneous
 from core.multibody.language.kinds import KINDS
 from core.multibody.language.reading import scene_from, unknown_field
 from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
@@ -192,6 +193,19 @@ class SceneDescription(Request):
         default=None,
         description="nearest: places and velocities are a sketch, in place of which the nearest are taken that satisfy "
         'the connections; the answer has them in `assembly`. {"nearest": [names]} moves these bodies alone.',
+    )
+
+    impacts: ImpactLaw = Field(
+        default="newton",
+        description="Law of the impacts of contacts that name none of their own. newton: restitution by the rates "
+        "before and after. poisson, stronge: the slip is followed through the impulse, and restitution is by the "
+        "impulse, or by the work along the gap.",
+    )
+    simultaneous: Simultaneous = Field(
+        default="undecided",
+        description="How contacts act that take impulses at one time. together: all at once. in order: one after "
+        "another, by their order or as they are listed, the first of those that approach. undecided: the motion ends "
+        "there with simultaneous-impacts, unless all orders have one outcome.",
     )
 
     def with_digits(self, document: Any) -> Self:

@@ -25,6 +25,7 @@ def touch_of(
     path: Path,
     restitution: Number | None,
     friction: Number | Sequence[Number] | None = None,
+    law: str | None = None,
 ) -> Touch:
     """Return the coefficients of a contact or a string."""
     static = kinetic = 0.0
@@ -38,13 +39,13 @@ def touch_of(
     elif static:
         names = tuple(f"{name}.friction.{axis}" for axis in AXES)
     bounces = 0.0 if restitution is None else reader.number(restitution, (*path, "restitution"))
-    return Touch(static, kinetic, bounces, names)
+    return Touch(static, kinetic, bounces, names, law or reader.scene.impacts)
 
 
 @definition_of.register
 def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a contact."""
-    touch = touch_of(reader, name, path, connection.restitution, connection.friction)
+    touch = touch_of(reader, name, path, connection.restitution, connection.friction, connection.impacts)
     if connection.measure == "turn":
         least = connection.at_least is not None
         field = "at_least" if least else "at_most"

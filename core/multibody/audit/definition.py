@@ -275,9 +275,12 @@ class Touch:
     static, kinetic, restitution : float
     friction : tuple of str
         Names of the forces of friction: none, one in the plane, three in space.
+    law : str
+        Of its impacts: "newton", "poisson" or "stronge".
     """
 
     static: float
     kinetic: float
     restitution: float
     friction: tuple[str, ...]
+    law: str = "newton"

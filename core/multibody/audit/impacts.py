@@ -163,6 +163,9 @@ class Impacts:
                 )
                 # Bounces that are too small to be followed end: what has come to rest stays closed.
                 off = np.minimum(np.abs(after + touch.restitution * before), np.abs(after))
+                if touch.law != "newton" and touch.friction:
+                    # The rates of the gap are in no fixed ratio, but do not close it.
+                    off = np.minimum(after, 0.0)
                 times = np.array([self.groups[k][0].time for k in rows])
                 ledger.compare("restitution", connection.name, times, off, MARGIN * known[rows])
 

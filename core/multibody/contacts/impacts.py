@@ -1,4 +1,4 @@
-"""Impacts: Newton's law of restitution, with impulses of friction.
+"""Impacts: laws of restitution, with impulses of friction.
 
 Where more than one contact takes an impulse, rigid bodies do not say whether they do so together or one after another:
 all orders are tried, and if they disagree the outcome is undecided unless the client orders them.
@@ -28,9 +28,11 @@ from core.multibody.contacts.contact_responses import (
     slip_rate,
 )
 from core.multibody.contacts.contact_states import Problem, phase_table
-from core.multibody.contacts.impulses import LIMIT, RatesByLine, alike, impulses_at_once, likest, rates_after
+from core.multibody.contacts.impulses import LIMIT, RatesByLine, alike, likest, rates_after
+from core.multibody.contacts.laws_of_impact import impulses_together
 from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.equations.dynamics import kinetic
+from core.multibody.language.contacts import Simultaneous
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.measures import COMPONENTS
 from core.multibody.table.table import Table
@@ -120,10 +122,12 @@ def impact(
     v: list[Ball],
     *,
     settled: Impact | None = None,
+    simultaneous: Simultaneous = "undecided",
 ) -> Impact | Problem:
     """Return the outcome of an impact of the touching measures, or why it is undecided.
 
     If it is `settled` which outcome is the only possible one, as far as the state is known, its like is returned.
+    Contacts that take impulses at one time act as `simultaneous` says.
 
     Raises
     ------
@@ -144,7 +148,7 @@ def impact(
         if not approaching(unilateral, group, q, v):
             continue
         require_few(unilateral, group, "contacts in one impact")
-        outcome = _group(unilateral, group, q, v, found, settled=settled)
+        outcome = _group(unilateral, group, q, v, found, simultaneous, settled=settled)
         if isinstance(outcome, Problem):
             return outcome
         works.update(outcome.works)
@@ -165,9 +169,9 @@ def impact(
     if not is_zero(gain) and gain > 0 and settled is None:
         return Problem(
             "energy-gain",
-            f"Newton's law of restitution with friction would add {float(gain):.6g} J to the motion",
+            f"{_laws(unilateral, impulses)} law of restitution with friction would add {float(gain):.6g} J",
             tuple(unilateral[i].name for i in impulses),
-            decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
+            decided_by='"impacts": "stronge", or a smaller coefficient of restitution',
         )
     return Impact(after, impulses, works, unilateral, changes, together, shared)
 
@@ -175,6 +179,11 @@ def impact(
 def _driven(table: Table, found: Responses, impulses: Forces) -> Ball:
     """Return the work that drives do while impulses act: of every row its impulse times the rate that it holds."""
     return sum((p * x * table.rows[r].rate for b, p in impulses.items() for r, x in found.reactions[b].items()), ZERO)
+
+
+def _laws(unilateral: Sequence[Unilateral], taking: Iterable[int]) -> str:
+    """Return whose laws some measures follow, in words."""
+    return " and ".join(dict.fromkeys(f"{unilateral[i].law.capitalize()}'s" for i in taking))
 
 
 def _shares(
@@ -190,7 +199,7 @@ def _shares(
     for i in group:
         one = unilateral[i]
         before = gap_rate(one, q, v)
-        if is_zero(gap_rate(one, q, after) + (one.restitution * before if before < 0 else ZERO)):
+        if one.law != "newton" or is_zero(gap_rate(one, q, after) + (one.restitution * before if before < 0 else ZERO)):
             lines.append(found.normal[i])
             if one.slips and is_zero(slip_rate(one, q, after)):
                 lines.extend(found.grip(i))
@@ -205,6 +214,7 @@ def _group(
     q: list[Ball],
     v: list[Ball],
     found: Responses,
+    simultaneous: Simultaneous,
     *,
     settled: Impact | None,
 ) -> _Outcome | Problem:
@@ -215,17 +225,22 @@ def _group(
     given = [i for i in group if unilateral[i].order is not None]
     if len(given) == len(group) > 1:
         return _in_turn(unilateral, _by_order(unilateral, given), rates, found)
-    if settled is not None:
+    if simultaneous == "in order" and len(group) > 1:
+        others = [[i] for i in group if unilateral[i].order is None]
+        return _in_turn(unilateral, [*_by_order(unilateral, given), *others], rates, found)
+    if settled is not None and all(unilateral[i].law == "newton" for i in group):
         known = [settled.changes[i] for i in group if i in settled.changes]
         change = [sum(parts, ZERO) for parts in zip(*known, strict=True)] or [ZERO] * len(v)
         return _outcome(group, likest(unilateral, group, rates, change, found), rates, found)
-    impulses = impulses_at_once(unilateral, group, rates, found)
+    impulses = impulses_together(unilateral, group, rates, found)
     if isinstance(impulses, Problem):
         return impulses
     at_once = _outcome(group, impulses, rates, found)
     taking = [i for i in group if impulses.get(normal[i], ZERO) != 0]
     # A taut string passes on what pulls it at once.
     apart = [i for i in taking if rates[normal[i]] != 0 or unilateral[i].closes != "taut"]
+    if simultaneous == "together" or settled is not None:
+        return at_once
     if len(apart) <= 1 and sum(rates[normal[i]] < 0 for i in group) <= 1:
         return at_once
     outcomes: list[tuple[str, Forces]] = [("together", impulses)]
@@ -324,7 +339,7 @@ def _in_turn(
         hit = next((one for one in order if any(now[normal[i]] < -least for i in one)), None)
         if hit is None:
             return _Outcome(_at_the_limit(total, now, least, found), works)
-        impulses = impulses_at_once(unilateral, hit, now, found)
+        impulses = impulses_together(unilateral, hit, now, found)
         if isinstance(impulses, Problem):
             return impulses
         for i, more in _outcome(hit, impulses, now, found).works.items():

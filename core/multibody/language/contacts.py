@@ -9,6 +9,13 @@ from typing import Any, ClassVar, Literal
 from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, carrier_of
 from core.multibody.language.written import Number, Place
 
+ImpactLaw = Literal["newton", "poisson", "stronge"]
+"""Law of impact: restitution by the rates of the gap, by the impulse, or by the work along the gap."""
+
+Simultaneous = Literal["together", "in order", "undecided"]
+"""What happens where contacts take impulses at one time: all act together, one after another, or mechanics leaves it
+open unless every order has one outcome."""
+
 
 class SurfaceConnection(Connection):
     """What touches a surface of the ground or of a body: `place` touches `on`, or `a` touches `b`."""
@@ -67,7 +74,7 @@ class Contact(SurfaceConnection):
     pass `b`, of which one has a rim or a shape at least. Or with `measure` "turn", the turn of `a` relative to `b`
     stays `at_least` or `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order`
     says, where several impacts at once leave their outcome open, in which order they happen: those of equal order
-    together.
+    together. `impacts` is the law of its impacts, that of the scene if left out.
     """
 
     place: Place | None = None
@@ -80,6 +87,7 @@ class Contact(SurfaceConnection):
     friction: Number | Sequence[Number] | None = None
     restitution: Number | None = None
     order: Number | None = None
+    impacts: ImpactLaw | None = None
     name: str | None = None
     kind: ClassVar[str] = "contact"
 

@@ -64,6 +64,8 @@ def _part(scene: Scene, bodies: Sequence[str], joined: Mapping[int, Sequence[str
         scene.let,
         scene.numbers,
         scene.assemble,
+        scene.impacts,
+        scene.simultaneous,
         tuple(number for number, _ in own),
     )
 

@@ -10,13 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, get_args
 
 from core.errors import InvalidParameter, Path
 from core.multibody.language.body import SceneBody
 from core.multibody.language.connection import Connection
+from core.multibody.language.contacts import ImpactLaw, Simultaneous
 from core.multibody.language.numerals import LONGEST_NAME, NAME, member
 from core.multibody.language.written import GROUND, Number, Vector
+from core.near_names import did_you_mean
 
 MOST_BODIES = 100
 """Bodies of a scene: the cost of its equations grows as the cube of their number."""
@@ -46,6 +48,11 @@ class Scene:
         Named numbers that formulas may use.
     numbers : {"decimals", "doubles"}
         Whether 0.1 is the decimal or the double nearest to it.
+    impacts : {"newton", "poisson", "stronge"}
+        Law of the impacts of contacts that name none of their own.
+    simultaneous : {"undecided", "together", "in order"}
+        How contacts act that take impulses at one time: all together; one after another, by their `order` or as they
+        are listed, the first of those that approach; or undecided, unless every order has one outcome.
     assemble : "nearest" or mapping, optional
         Takes places and velocities as a sketch, in place of which the nearest are found that satisfy the connections;
         ``{"nearest": [names]}`` moves these bodies alone.
@@ -57,6 +64,8 @@ class Scene:
     let: Mapping[str, Number] = field(default_factory=lambda: MappingProxyType({}))
     numbers: Literal["decimals", "doubles"] = "decimals"
     assemble: Literal["nearest"] | Mapping[str, Sequence[str]] | None = None
+    impacts: ImpactLaw = "newton"
+    simultaneous: Simultaneous = "undecided"
 
     def __post_init__(self) -> None:
         if not isinstance(self.bodies, Mapping) or not self.bodies:
@@ -64,6 +73,8 @@ class Scene:
         if isinstance(self.connections, (str, Mapping)) or not isinstance(self.connections, Sequence):
             raise InvalidParameter("connections", "be a list")
         check_size(self.bodies, self.connections)
+        _check_word("impacts", self.impacts, get_args(ImpactLaw))
+        _check_word("simultaneous", self.simultaneous, get_args(Simultaneous))
         for name, body in self.bodies.items():
             check_name(name, member(("bodies",), name))
             if not isinstance(body, SceneBody):
@@ -128,6 +139,11 @@ class ScenePart(Scene):
 def _unlike(name: str, others: set[str]) -> str:
     """Return a name followed by the first number that makes it another."""
     return next(new for k in range(2, len(others) + 3) if (new := f"{name[: LONGEST_NAME - 5]}-{k}") not in others)
+
+
+def _check_word(field: str, value: object, words: Sequence[str]) -> None:
+    if value not in words:
+        raise InvalidParameter(field, f"be one of {', '.join(words)}", remedy=did_you_mean(value, words))
 
 
 def check_name(name: object, path: Path) -> None:

@@ -162,7 +162,7 @@ class _Run:
                 if share > 0.0:
                     unilateral, settling = self._settling(share, limit)
                     q, v = tracks.wide()
-                outcome = impact(table, unilateral, self.touching, q, v)
+                outcome = impact(table, unilateral, self.touching, q, v, simultaneous=self.base.scene.simultaneous)
                 # Which of small bounces in turn comes first may be beyond what is known of the state.
                 if not (isinstance(outcome, Problem) and outcome.code == "simultaneous-impacts"):
                     break
@@ -174,7 +174,9 @@ class _Run:
             if not tracks.exact:
                 rates = []
                 for track in tracks.each:
-                    alike = impact(table, unilateral, self.touching, track.q, track.v, settled=outcome)
+                    own = track.q, track.v
+                    how = self.base.scene.simultaneous
+                    alike = impact(table, unilateral, self.touching, *own, settled=outcome, simultaneous=how)
                     if isinstance(alike, Problem):
                         self._stop(alike)
                         return False

@@ -70,6 +70,9 @@ def recurring(
     one = unilateral[i]
     if phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
         return None
+    if one.slip is not None and one.law != "newton":
+        # The slip that is followed through an impulse changes its rebound from one bounce to the next.
+        return None
     exact = phase.models[0].whole.uniform and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
     if exact and not listed:
         return None

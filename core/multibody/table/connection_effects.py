@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, gradient
+from core.multibody.language.contacts import ImpactLaw
 
 
 @dataclass(frozen=True)
@@ -137,6 +138,8 @@ class Unilateral:
         Whether sticking is rolling.
     order : ball or None
         Place in the order of simultaneous impacts.
+    law : str
+        Of its impacts: "newton", "poisson" or "stronge".
     whole : str or None
         The connection whose forces are the sums of those of its corners, of which this is one.
     facets : tuple of Facet
@@ -160,6 +163,7 @@ class Unilateral:
     order: Ball | None = None
     across: LinearForm | None = None
     tangents: tuple[Sequence[Ball], Sequence[Ball]] | None = None
+    law: ImpactLaw = "newton"
     whole: str | None = None
     facets: tuple[Facet, ...] = ()
     region: tuple[Poly, ...] = ()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import get_args
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, difference, is_zero
-from core.multibody.language.contacts import Contact
+from core.multibody.language.contacts import Contact, ImpactLaw
 from core.multibody.language.strings import String
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Unilateral
@@ -31,7 +32,14 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
     static, kinetic = _friction(measures, connection.friction, (*path, "friction"))
     restitution, order = bounciness(measures, connection, path)
     rubs = not is_zero(static)
-    common = Unilateral(name, {}, None, static, kinetic, restitution, order=order)
+    law = impact_law(measures, connection, path)
+    if rubs and measures.dimension == 3 and law != "newton":
+        raise InvalidParameter(
+            (*path, "impacts"),
+            "be newton where a contact in space has friction: its slip turns while the impulse acts",
+            remedy='leave out the friction, or take "newton" for this contact',
+        )
+    common = Unilateral(name, {}, None, static, kinetic, restitution, order=order, law=law)
     if measures.dimension == 3:
         found = [
             replace(
@@ -58,6 +66,16 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
     if len(found) > 1:
         found = [replace(one, name=f"{name}.{i + 1}", whole=name) for i, one in enumerate(found)]
     measures.unilateral.extend(found)
+
+
+def impact_law(measures: Measures, connection: Contact, path: Path) -> ImpactLaw:
+    """Return the law of the impacts of a contact: its own, or that of the scene."""
+    law = connection.impacts
+    if law is None:
+        return measures.coordinates.scene.impacts
+    if law not in get_args(ImpactLaw):
+        raise InvalidParameter((*path, "impacts"), f"be one of {', '.join(get_args(ImpactLaw))}")
+    return law
 
 
 def bounciness(measures: Measures, connection: Contact | String, path: Path) -> tuple[Ball, Ball | None]:

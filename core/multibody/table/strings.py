@@ -198,7 +198,15 @@ def _at_most(measures: Measures, part: str, longer: Poly, connection: String, pa
     """Return the measure of a string: what it is longer than its way."""
     restitution, order = bounciness(measures, connection, path)
     gap = combined((-ONE, longer))
-    return Unilateral(part, gap, restitution=restitution, closes="taut", opens="slack", order=order)
+    return Unilateral(
+        part,
+        gap,
+        restitution=restitution,
+        closes="taut",
+        opens="slack",
+        order=order,
+        law=measures.coordinates.scene.impacts,
+    )
 
 
 def _require_taut(way: Ball, length: Ball, path: Path) -> None:

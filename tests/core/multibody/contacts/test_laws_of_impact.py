@@ -1,0 +1,86 @@
+"""Several contacts that take impulses at one time, as `simultaneous` and the laws of impact say."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from core.errors import InvalidParameter
+from core.multibody.solve import solve_scene
+from tests.core.multibody.worked_examples import column, read
+
+
+def row(count: int, restitution: float, **more: Any) -> dict[str, Any]:
+    """Return balls in a row, all in touch but the first, which comes at 1 m/s."""
+    bodies = {
+        f"b{i}": {"mass": 1, "radius": 0.1, "at": [f"{i}/5" if i else -1, 0], "velocity": [0 if i else 1, 0]}
+        for i in range(count)
+    }
+    contacts = [
+        {"kind": "contact", "name": f"c{i}", "a": f"b{i}", "b": f"b{i + 1}", "restitution": restitution}
+        for i in range(count - 1)
+    ]
+    return {"bodies": bodies, "connections": contacts, **more}
+
+
+def speeds(scene: dict[str, Any]) -> list[float]:
+    answer = solve_scene(read(scene), [2.0])
+    return [float(column(answer, f"{name}.velocity").values[0, 0]) for name in scene["bodies"]]
+
+
+@pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
+def test_a_cradle_in_order_passes_the_speed_on(law: str) -> None:
+    """Equal balls exchange their speeds; of 0.5 each impact leaves (1 + e)/2 of it to the next."""
+    assert speeds(row(5, 1, simultaneous="in order", impacts=law)) == pytest.approx([0, 0, 0, 0, 1], abs=1e-15)
+    assert speeds(row(3, 0.5, simultaneous="in order", impacts=law))[2] >= 0.5625
+
+
+def test_a_cradle_together_by_newton_and_poisson() -> None:
+    """By Newton's law the balls behind stay in touch; by Poisson's each contact expands by its own compression.
+
+    Three balls: compression leaves 1/3 for all with the impulses 2/3 and 1/3, and expansion doubles them for e = 1.
+    """
+    assert speeds(row(3, 1, simultaneous="together")) == pytest.approx([-1 / 3, 2 / 3, 2 / 3], abs=1e-15)
+    found = speeds(row(3, 1, simultaneous="together", impacts="poisson"))
+    assert found == pytest.approx([1 - 4 / 3, 4 / 3 - 2 / 3, 2 / 3], abs=1e-15)
+    # A lighter ball in the middle: compression leaves 1/(2.5) and the impulses 0.6 and 0.4 of the first's momentum.
+    light = row(3, 1, simultaneous="together", impacts="poisson")
+    light["bodies"]["b1"]["mass"] = 0.5
+    assert speeds(light) == pytest.approx([1 - 1.2, (1.2 - 0.8) / 0.5, 0.8], abs=1e-15)
+
+
+def test_equal_order_is_together() -> None:
+    scene = row(3, 1)
+    for contact in scene["connections"]:
+        contact["order"] = 1
+    assert speeds(scene) == speeds(row(3, 1, simultaneous="together"))
+
+
+def test_a_box_that_lands_flat() -> None:
+    """Both corners at once, without friction: it rebounds with e of its speed by every law and in every order."""
+    shape = {"kind": "box", "width": 0.4, "height": 0.2}
+    floor = {"kind": "contact", "name": "f", "place": "b", "on": {"at": [0, 0]}, "restitution": 0.5}
+    bodies = {"b": {"mass": 1, "shape": shape, "at": [0, 1], "velocity": [0, -1]}}
+    for law in ("newton", "poisson"):
+        scene = {"bodies": bodies, "connections": [floor], "simultaneous": "together", "impacts": law}
+        answer = solve_scene(read(scene), [2.0])
+        assert column(answer, "b.velocity").values[0].tolist() == [0, 0.5]
+
+
+@pytest.mark.parametrize(
+    ("change", "at"),
+    [
+        ({"impacts": "newtons"}, ("impacts",)),
+        ({"simultaneous": "at once"}, ("simultaneous",)),
+    ],
+)
+def test_words_that_do_not_exist_are_refused(change: dict[str, str], at: tuple[str, ...]) -> None:
+    with pytest.raises(InvalidParameter) as fault:
+        solve_scene(read({**row(2, 1), **change}))
+    assert fault.value.path == at
+    scene = row(2, 1)
+    scene["connections"][0]["impacts"] = "hertz"
+    with pytest.raises(InvalidParameter) as fault:
+        solve_scene(read(scene))
+    assert fault.value.path == ("connections", 0, "impacts")
