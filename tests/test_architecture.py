@@ -44,7 +44,7 @@ ALLOWED["multibody"] = (
 
 WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",
        "prometheus_client", "service"}  # fmt: skip
-OUTER = ("assessment", "sensitivities", "studies", "work_precision")
+OUTER = ("assessment", "find", "sensitivities", "studies", "work_precision")
 """Modules that compare results across packages, and may therefore import all of core."""
 
 SERVICE_LAYERS = (
@@ -272,6 +272,13 @@ TESTED_IN |= {
     for name in ("english", "french", "german", "spanish")
 }
 TESTED_IN["core/assessment/feedback/entry_fault.py"] = "core/assessment/test_typed_entry.py"
+TESTED_IN |= {
+    f"core/find/{name}.py": "core/find/test_search.py"
+    for name in (
+        *("borders", "evaluations", "extremes", "figures", "infinite", "minima"),
+        *("roots", "scanning", "solutions", "systems", "varied"),
+    )
+}
 TESTED_IN["core/assessment/carried.py"] = "core/assessment/test_grader.py"
 TESTED_IN["core/assessment/terms.py"] = "core/assessment/test_grader.py"
 TESTED_IN["core/assessment/gradable.py"] = "core/assessment/test_grader.py"

@@ -68,6 +68,9 @@ ESTIMATE = "estimate (conditioning)"
 UNKNOWN = "unknown"
 """Unit of a number that none is declared for: nothing is said of the dimensions of formulas with it."""
 
+ONE_ERROR = ("value", "values", "time", "least", "largest")
+"""Figures of objects whose `error` is that of these alone."""
+
 OF_METHOD = "estimate (rounding of the method that the question names)"
 
 
@@ -326,11 +329,26 @@ class GradedQuestion:
 def _bound_beside(answer: Mapping[str, Any], path: Path) -> float | Floats | None:
     """Return the bound that an answer states of a figure: under `errors` by its name, or as `error` of the only one."""
     names = [k for k, step in enumerate(path) if isinstance(step, str)]
-    outer, own = path[: names[-1]], path[names[-1] :]
-    bound = value_at(answer, (*outer, "errors", own[0]))
-    if bound is None and own[0] in ("value", "values", "time"):
-        bound = value_at(answer, (*outer, "error"))
-    return bound if isinstance(bound, (float, np.ndarray)) else None
+    for k in reversed(names):
+        bound = inside(_reached(answer, path[:k]), "errors")
+        for step in path[k:]:
+            if isinstance(bound, (float, list, tuple, np.ndarray)) or bound is None:
+                break
+            bound = inside(bound, step)
+        found = value_at({"": bound}, ("",))
+        if isinstance(found, (float, np.ndarray)):
+            return found
+    if path[names[-1]] in ONE_ERROR:
+        found = value_at(answer, (*path[: names[-1]], "error"))
+        return found if isinstance(found, (float, np.ndarray)) else None
+    return None
+
+
+def _reached(answer: Any, path: Path) -> Any:
+    """Return whatever stands at a path of an answer."""
+    for step in path:
+        answer = inside(answer, step)
+    return answer
 
 
 def _distance_of(bare: Reference, bound: float | Floats) -> float:

@@ -14,6 +14,7 @@ from service.routes.certified.scenes import certified_scenes
 from service.routes.certified.surfaces import CERTIFIED_ELLIPSOID
 from service.routes.described_scenes import DESCRIBED_SCENES
 from service.routes.examples import examples
+from service.routes.find import finding
 from service.routes.plan import planning
 from service.routes.rotation.ensemble import ENSEMBLE
 from service.routes.rotation.precession import PRECESSION
@@ -43,11 +44,14 @@ def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostR
     ordinary = (*rotations, *scene_routes(scenes), *DESCRIBED_SCENES)
     in_doubles = tuple(with_sensitivities(naming_certified(route, paths)) for route in ordinary)
     answering = (*in_doubles, *certified)
-    studies = studying(answering)
+    find = finding(in_doubles, certified)
+    # A question asked backwards is a question that may be planned, graded and varied itself.
+    studies = studying((*answering, find))
     about_others = (
-        planning((*answering, studies)),
-        assessing(in_doubles, certified),
-        varying(in_doubles, certified),
+        planning((*answering, find, studies)),
+        find,
+        assessing((*in_doubles, find), certified),
+        varying((*in_doubles, find), certified),
         studies,
     )
     shown = examples()

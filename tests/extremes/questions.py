@@ -431,6 +431,32 @@ def variants() -> Named:
                 )
 
 
+SINGLE = {
+    "/v1/rotation/stability": "/equilibria/0/moment",
+    "/v1/rotation/trajectory": "/angular_velocity/0/0",
+    "/v1/bodies/mass-properties": "/principal/moments/0",
+}
+"""A number of the answers of some endpoints whose first claims are arrays."""
+
+
+def findings() -> Named:
+    until: tuple[dict[str, Any], ...] = ({"equals": 0.0}, {"largest": True}, {"infinite": True}, {"changes": True})
+    ends = ([0.0, LARGEST / 2], [-1e150, 1e150], [SUBNORMAL, 1.0], [1.0, 2.0])
+    for path, (asked, share, pointers) in CLAIMED.items():
+        for (name, question), wanted, between in zip(
+            list(asked())[:: 40 * share], cycle(until), cycle(ends), strict=False
+        ):
+            if pointer := _first_number(question):
+                yield (
+                    f"{path}, {name}, {between}, {wanted}",
+                    {
+                        "question": {"path": path, "request": question},
+                        "vary": {"pointer": pointer, "between": between},
+                        "until": {"figure": SINGLE.get(path, pointers[0]), **wanted},
+                    },
+                )
+
+
 def studies() -> Named:
     ranges: tuple[dict[str, Any], ...] = (
         {"min": SUBNORMAL, "max": LARGEST, "distribution": "log-uniform", "count": 3},
@@ -496,5 +522,6 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/plan": plans,
     "/v1/assessments": assessments,
     "/v1/variants": variants,
+    "/v1/find": findings,
     "/v1/studies": studies,
 }

@@ -26,8 +26,8 @@ from tests.service.random_questions import questions_of
 
 SERVICE = inline_service()
 ROUTES = {route.path: route for route in questions()}
-UNPLANNED = ("/v1/plan", "/v1/assessments", "/v1/variants", "/v1/studies")
-# Plans are made of any other question; assessments and variants cost their question. Studies have a test of their own.
+UNPLANNED = ("/v1/plan", "/v1/assessments", "/v1/variants", "/v1/studies", "/v1/find")
+# Plans are made of any other question; these cost their question. Studies have a test of their own.
 PLANNED = [(route, name) for route in ROUTES.values() if route.path not in UNPLANNED for name in route.examples]
 PATH = "/v1/rotation/trajectory"
 HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())

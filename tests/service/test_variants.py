@@ -80,7 +80,7 @@ def test_every_question_has_variants_whose_figures_are_those_of_its_answer(path:
 
 
 def at(document: Any, pointer: str) -> Any:
-    for step in pointer[1:].split("/"):
+    for step in (step.replace("~1", "/").replace("~0", "~") for step in pointer[1:].split("/")):
         document = document[int(step)] if isinstance(document, list) else document[step]
     return document
 

@@ -1,0 +1,1 @@
+"""Questions asked backwards: with which inputs does an answer have a property?"""
