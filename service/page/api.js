@@ -57,7 +57,12 @@ export class Worker {
     this.panel = panel;
     this.running = null;
     this.text = panel.querySelector("span");
-    panel.querySelector("button").addEventListener("click", () => this.running?.abort(new DOMException("cancelled", "AbortError")));
+    panel.querySelector("button").addEventListener("click", () => this.stop());
+  }
+
+  /** Give up what is under way. */
+  stop() {
+    this.running?.abort(new DOMException("cancelled", "AbortError"));
   }
 
   /** Run `work(send)`, which sends questions as `ask` does; returns null if newer work or the reader cancelled it. */

@@ -48,15 +48,17 @@ export class Numbers {
     for (const [name, value] of Object.entries(named)) this.names[name] = this.number(value);
   }
 
-  number(value) {
+  /** `more` are names beside those of the description, such as the time. */
+  number(value, more = null) {
     if (typeof value === "number") return value;
-    if (typeof value === "string") return formula(value, this.names);
+    if (typeof value === "string") return formula(value, more ? { ...this.names, ...more } : this.names);
     if (value && typeof value === "object" && "degrees" in value) return (this.number(value.degrees) * Math.PI) / 180;
+    if (value && typeof value === "object" && "unit" in value) return this.number(value.value);
     return NaN;
   }
 
-  vector(value) {
-    if (Array.isArray(value)) return value.map((x) => this.number(x));
+  vector(value, more = null) {
+    if (Array.isArray(value)) return value.map((x) => this.number(x, more));
     if (value?.polar) {
       const [r, angle] = value.polar.map((x) => this.number(x));
       return [r * Math.cos(angle), r * Math.sin(angle)];

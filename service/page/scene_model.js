@@ -1,5 +1,6 @@
 // A described scene at any time of its answer: places of bodies, and what is to be drawn of every connection.
 import { Numbers } from "./formula.js";
+import { outlineOf } from "./outlines.js";
 import { stringPath } from "./string_path.js";
 import { add, dot, norm, quarter, rotated, scaled, sub, turnBetween, turned, unit } from "./vectors.js";
 
@@ -14,6 +15,7 @@ export class SceneModel {
     this.space = this.bodies[0]?.start.length === 3;
     this.connections = (description.connections || []).map((connection, i) => ({ ...connection, label: connection.name || `${connection.kind}-${i + 1}` }));
     this.reaches = new Map();
+    this.lifts = new Map();
     this.seek(0);
     this.strings = this.connections.filter((c) => ["string", "chain"].includes(c.kind)).map((c) => [c, stringPath(this, c)]);
     this.forceScale = this.largestForce();
@@ -21,15 +23,70 @@ export class SceneModel {
 
   readBody(name, body) {
     const n = this.numbers, start = n.vector(body.at) || [0, 0];
-    const moments = n.vector(body.moments);
+    const moments = n.vector(body.moments), shape = body.shape && typeof body.shape === "object" ? body.shape : null;
     return {
-      name, start, moments, mass: n.number(body.mass ?? 0) || 0,
-      radius: body.radius === undefined ? null : n.number(body.radius),
-      rigid: body.inertia !== undefined || body.moments !== undefined || body.tensor !== undefined || body.body !== undefined,
+      name, start, moments, shape, mass: n.number(body.mass ?? 0) || 0,
+      radius: body.radius !== undefined ? n.number(body.radius) : shape?.radius !== undefined && shape.kind !== "capsule" ? n.number(shape.radius) : null,
+      rigid: shape !== null || body.inertia !== undefined || body.moments !== undefined || body.tensor !== undefined || body.body !== undefined,
       angle0: n.number(body.angle ?? 0) || 0,
       axes: Array.isArray(body.axes) ? body.axes.map((row) => n.vector(row)) : null,
       places: Object.fromEntries(Object.entries(body.places || {}).map(([place, at]) => [place, n.vector(at)])),
     };
+  }
+
+  heaviest() {
+    return Math.max(...this.bodies.map((body) => body.mass)) || 1;
+  }
+
+  hasOutline(body) {
+    return outlineOf(body, this.numbers) !== null;
+  }
+
+  /** How a point stands on a straight face, as a block: `{along, normal, level}`, level being how many lie below; null if it does not. */
+  liftOf(body) {
+    if (this.space || this.hasOutline(body) || body.rigid || !body.mass) return null;
+    const c = this.standing(body.name);
+    if (!c) return null;
+    const { along, normal, body: below } = this.face(c.on);
+    const under = below && this.liftOf(below);
+    return { along, normal, level: under ? under.level + 1 : 0 };
+  }
+
+  /** The connection by which a point stands on a straight face. */
+  standing(name) {
+    if (!this.lifts.has(name)) this.lifts.set(name, this.connections.find((c) => ["contact", "track"].includes(c.kind) && c.place === name && c.on && typeof c.on === "object" && ["radius", "curvature", "curve"].every((k) => c.on[k] === undefined)) ?? null);
+    return this.lifts.get(name);
+  }
+
+  /** Whether a point that stands on a face itself carries another. */
+  carriesBlock(body) {
+    return this.liftOf(body) !== null;
+  }
+
+  /** Velocities or accelerations of the bodies now: `{at, vector, label}`. */
+  rates(what) {
+    return this.bodies.map((body) => ({ at: body.at, vector: this.rate(body, what), label: body.name })).filter((a) => a.vector);
+  }
+
+  rate(body, what) {
+    const velocity = this.column(`${body.name}.velocity`);
+    if (!velocity) return null;
+    if (what === "velocity") return this.value(`${body.name}.velocity`);
+    // Of samples the slope between two neighbours.
+    const i = Math.min(this.index, velocity.length - 2), step = this.time[i + 1] - this.time[i];
+    return step > 0 && velocity[i] && velocity[i + 1] ? velocity[i + 1].map((x, k) => (x - velocity[i][k]) / step) : null;
+  }
+
+  /** The largest of them in the whole motion. */
+  largestRate(what) {
+    const { now } = this;
+    let largest = 0;
+    for (let k = 0; k <= 60; k++) {
+      this.seek((k / 60) * this.time.at(-1));
+      for (const { vector } of this.rates(what)) largest = Math.max(largest, norm(vector));
+    }
+    this.seek(now);
+    return largest;
   }
 
   column(name) {
@@ -97,7 +154,11 @@ export class SceneModel {
 
   /** Where a place is now, and the body that it belongs to: `{point, body}`. */
   place(reference) {
-    if (typeof reference !== "string") return { point: this.numbers.vector(reference) || (this.space ? [0, 0, 0] : [0, 0]), body: null };
+    if (typeof reference !== "string") {
+      // A support that moves is a formula of the time.
+      const point = this.numbers.vector(reference, { t: this.now ?? 0 });
+      return { point: point || (this.space ? [0, 0, 0] : [0, 0]), body: null };
+    }
     const dotAt = reference.lastIndexOf(".");
     const body = this.byName[reference] || this.byName[reference.slice(0, dotAt)];
     if (!body) return { point: this.space ? [0, 0, 0] : [0, 0], body: null };

@@ -1,6 +1,6 @@
 // Sliders for the numbers of a scene; each changes its number in the text and nothing else.
 import { make, written } from "./dom.js";
-import { placeOf } from "./json_places.js";
+import { namesIn, valueAt } from "./scene_text.js";
 
 const PLACES = new Set(["at", "places", "axes", "through", "b", "a", "polar", "axis", "direction", "normal", "tensor"]);
 const LEFT_OUT = new Set(["times", "accuracy", "input_uncertainty", "round", "outputs", "method"]);
@@ -8,18 +8,16 @@ const LEFT_OUT = new Set(["times", "accuracy", "input_uncertainty", "round", "ou
 /** Fill `panel` and `more` with sliders for the numbers in `places`; `change(pointer, text)` is called while one moves. */
 export function sliders(panel, more, read, change) {
   const { value, places } = read;
-  const leaves = [...places.keys()].filter((pointer) => typeof at(value, pointer) === "number" && !LEFT_OUT.has(pointer.split("/")[1]));
-  const made = leaves.map((pointer) => [isPlace(pointer) ? more : panel, slider(pointer, at(value, pointer), value, change)]);
+  const leaves = [...places.keys()].filter((pointer) => typeof valueAt(value, pointer) === "number" && !LEFT_OUT.has(pointer.split("/")[1]));
+  const made = leaves.map((pointer) => [isPlace(pointer) ? more : panel, slider(pointer, valueAt(value, pointer), value, change)]);
   for (const target of [panel, more]) target.replaceChildren(...made.filter(([to]) => to === target).map(([, element]) => element));
 }
 
-const parts = (pointer) => pointer.split("/").slice(1).map((p) => p.replaceAll("~1", "/").replaceAll("~0", "~"));
-const at = (value, pointer) => parts(pointer).reduce((inner, part) => inner?.[part], value);
-const isPlace = (pointer) => parts(pointer).some((part) => PLACES.has(part)) && !pointer.endsWith("radius") && !pointer.endsWith("slope");
+const isPlace = (pointer) => namesIn(pointer).some((part) => PLACES.has(part)) && !pointer.endsWith("radius") && !pointer.endsWith("slope");
 
 /** A pointer in words: "heavy: mass", "gravity y". */
 export function inWords(pointer, value) {
-  const [first, second, ...rest] = parts(pointer);
+  const [first, second, ...rest] = namesIn(pointer);
   const words = (list) => list.map((p, i) => (/^\d+$/.test(p) ? ["x", "y", "z"][p] && i === list.length - 1 ? ["x", "y", "z"][p] : String(Number(p) + 1) : p.replaceAll("_", " "))).join(" ");
   if (first === "bodies") return `${second}: ${words(rest)}`;
   if (first === "connections") {
@@ -54,10 +52,4 @@ export function markFaults(panels, faults) {
     if (label) label.querySelector(".error").textContent = detail;
     return !label;
   });
-}
-
-/** The text with the value at `pointer` replaced. */
-export function replaced(text, places, pointer, next) {
-  const [start, end] = placeOf(places, pointer);
-  return text.slice(0, start) + next + text.slice(end);
 }

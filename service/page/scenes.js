@@ -1,21 +1,36 @@
-// Scenes in motion: those of the catalogue, changed by sliders or as JSON.
+// Scenes in motion: built by hand, changed by handles, sliders or as JSON.
 import { Refusal, Worker, get } from "./api.js";
+import { showEvents, showModel } from "./answer_words.js";
+import { Board } from "./board.js";
+import { CurveChoice } from "./curve_choice.js";
 import { $, make, written } from "./dom.js";
-import { NotJson, placeOf, readJson } from "./json_places.js";
-import { drawn, isNamed, movingQuestion } from "./named_scenes.js";
+import { facesAt, faultInWords, partOf } from "./impossible.js";
+import { headline, sayEvent } from "./headline.js";
+import { Inspector } from "./inspector.js";
+import { placeOf } from "./json_places.js";
+import { Live } from "./live.js";
+import { drawn, isNamed } from "./named_scenes.js";
 import { mark, numberOf } from "./number_fields.js";
+import { Palette } from "./palette.js";
+import { showParts } from "./parts_list.js";
 import { PlaneView } from "./plane_view.js";
 import { Player } from "./player.js";
 import { TimeChart } from "./plots.js";
 import { readable, requestPanel } from "./request_panel.js";
+import { selectionActions } from "./selection_actions.js";
+import { answerScene } from "./scene_answers.js";
+import { NOTHING, SceneDocument } from "./scene_document.js";
+import { listenForKeys, listenForUndo } from "./scene_keys.js";
 import { SceneModel } from "./scene_model.js";
-import { markFaults, replaced, sliders } from "./scene_sliders.js";
+import { exampleText } from "./scene_questions.js";
+import { markFaults, sliders } from "./scene_sliders.js";
 import { SpaceView } from "./space_view.js";
 import { readState, writeState } from "./url_state.js";
-import { howInWords, power } from "./words.js";
 
 const sentence = (text) => text.replace(/^./, (c) => c.toUpperCase());
 const titled = (name) => sentence(name.replaceAll("-", " "));
+const OWN = "own";
+/** What the list calls a scene that is nobody's but the reader's. */
 
 /** Under which heading a scene of the catalogue is listed. */
 function kindOf({ name, example }) {
@@ -24,225 +39,263 @@ function kindOf({ name, example }) {
   return example.connections?.some((c) => c.kind === "contact") ? "In the plane, with contacts" : "In the plane";
 }
 
-const SAMPLES = 801, LONGEST = 20, MOST_EVENTS = 12;
-const OUTPUTS = ["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time"];
-const state = { scene: "double-pendulum", text: "", own: false, window: null };
-let catalogue = new Map(), model = null, answer = null, view = null, space = null, busy = false, again = false;
+const state = { scene: "double-pendulum", changed: false, window: null };
+let catalogue = new Map(), model = null, answer = null, view = null, space = null, timer = null;
 
+const doc = new SceneDocument(changed);
 const plane = new PlaneView($("plane-view"));
 const player = new Player($("player"));
 const chart = new TimeChart($("chart"), player, "Curves", 190);
+const curves = new CurveChoice(chart);
 const worker = new Worker($("progress"));
+const live = new Live(refresh, () => worker.stop());
 const showRequests = requestPanel($("request"));
+
+const say = (words) => { $("said").textContent = words; };
+const ready = () => doc.sound && !isNamed(state.scene);
+const atStart = () => !player.playing && player.time === 0;
+const board = new Board({ doc, view: plane, say, ready, atStart, start: toStart, selected: showSelection, dropped, rename: renameInPlace });
+const inspector = new Inspector($("inspector"), { doc, board, edit, rename });
+new Palette($("palette"), $("connect"), { board, say });
+const act = selectionActions({ doc, board, say, start: toStart, selected: showSelection });
 
 player.onTime((time) => {
   if (!model) return;
   model.seek(time);
   view === space ? view?.update() : plane.render();
 });
+
+for (const name of ["forces", "velocities", "accelerations", "values", "trails", "ghosts", "names"]) {
+  $(name).onchange = () => look();
+}
+function look() {
+  const on = (name) => $(name).checked;
+  plane.look = { forces: on("forces"), velocities: on("velocities"), accelerations: on("accelerations"), values: on("values"), trails: on("trails"), names: on("names"), ghosts: on("ghosts") ? 8 : 0 };
+  if (space) space.showForces = on("forces");
+  player.show();
+}
+
 $("scene").onchange = () => choose($("scene").value);
-$("forces").onchange = () => { plane.showForces = $("forces").checked; if (space) space.showForces = plane.showForces; player.show(); };
-$("curves").onchange = () => showCurves();
-$("editor").oninput = () => { clearTimeout(state.timer); state.timer = setTimeout(() => edited($("editor").value, true), 300); };
+$("new").onclick = () => { choose(OWN); say("A new scene. Drag parts from the palette into the picture."); };
+$("open-file").onclick = () => $("file").click();
+$("file").onchange = () => { openFile($("file").files[0]); $("file").value = ""; };
+$("undo").onclick = () => act.undo();
+$("redo").onclick = () => act.redo();
+$("delete").onclick = () => act.remove();
+$("duplicate").onclick = () => act.duplicate();
+$("closer").onclick = () => plane.zoom(1.25);
+$("farther").onclick = () => plane.zoom(0.8);
+$("fit").onclick = () => plane.fit(model?.bodies.length ? model.bounds() : { low: [-2, -1.25], high: [2, 1.25] });
+$("editor").oninput = () => { clearTimeout(timer); timer = setTimeout(() => doc.change("JSON edited", { text: $("editor").value, how: "text", run: "editor" }), 300); };
 $("window").onchange = () => {
   const value = numberOf($("window").value), wrong = $("window").value.trim() !== "" && !(value > 0);
   mark($("window"), wrong);
   $("window-error").textContent = wrong ? "A time above 0, or nothing for a time that fits the scene." : "";
-  if (!wrong) { state.window = value; refresh(); }
+  if (!wrong) { state.window = value; live.ask("open"); }
 };
-document.querySelector("form").addEventListener("submit", (event) => event.preventDefault());
+for (const form of document.querySelectorAll("form")) form.addEventListener("submit", (event) => event.preventDefault());
+listenForKeys($("plane-canvas"), { px: () => plane.px, act: { ...act, rename: () => inspector.focusName(), nothing: escape, finish: () => board.finish(), closer: () => plane.zoom(1.25), farther: () => plane.zoom(0.8), play: () => player.button.click() } });
+listenForUndo(act);
+document.addEventListener("dragover", (event) => { event.preventDefault(); $("plane-view").classList.add("dropping"); });
+document.addEventListener("dragleave", () => $("plane-view").classList.remove("dropping"));
+document.addEventListener("drop", (event) => {
+  event.preventDefault();
+  $("plane-view").classList.remove("dropping");
+  openFile(event.dataTransfer.files[0]);
+});
 
-function choose(name, text = null) {
+function escape() {
+  if (board.tool) board.use(null);
+  else { doc.selection.clear(); showSelection(); }
+}
+
+async function openFile(file) {
+  if (!file) return;
+  choose(OWN, await file.text());
+  say(`${file.name} opened.`);
+}
+
+/** Show a scene of the catalogue, or one of the reader's own. */
+function choose(name, text = null, waiting = []) {
   const entry = catalogue.get(name);
-  state.scene = name;
-  state.window = null;
+  Object.assign(state, { scene: name, window: null, changed: text !== null && name !== OWN });
   $("window").value = "";
   $("scene").value = name;
   $("language").href = isNamed(name) ? "/docs" : "/docs#/scenes/described_scene";
   player.time = 0;
-  const example = isNamed(name) ? movingQuestion(name, entry.example) : entry.example;
-  edited(text ?? readable(example), text !== null);
-  state.own = text !== null;
+  board.use(null);
+  doc.open(text ?? (name === OWN ? NOTHING : exampleText(name, entry.example, readable)), waiting);
 }
 
 /** What is shown: the scene that was chosen, or what the reader has made of it. */
-const titleNow = () => (state.own ? `Changed from “${titled(state.scene)}”` : sentence(catalogue.get(state.scene).summary));
+const titleNow = () => (state.scene === OWN ? "A scene of your own" : state.changed ? `Changed from “${titled(state.scene)}”` : sentence(catalogue.get(state.scene).summary));
 
-/** Take a new text: sliders, picture and messages follow. */
-function edited(text, own, rebuild = true) {
-  state.text = text;
-  state.own = own;
+/** The document has changed: everything that shows it follows. */
+function changed(how) {
+  if (how !== "open") state.changed = true;
   $("about").textContent = `${titleNow()}.`;
-  if ($("editor").value !== text) $("editor").value = text;
+  if ($("editor").value !== doc.text) $("editor").value = doc.text;
+  $("undo").disabled = doc.past.length === 0;
+  $("redo").disabled = doc.future.length === 0;
+  if (!doc.sound) return complain([{ pointer: null, ...doc.fault }]);
+  if (how !== "slider" && how !== "drag") sliders($("sliders"), $("place-sliders"), doc.scene, (pointer, next) => doc.change("slider moved", { scene: doc.scene.withSource(pointer, next), how: "slider", run: `slider ${pointer}` }));
+  showSelection();
+  return live.ask(how);
+}
+
+function edit(words, scene, run = null) {
+  toStart();
+  doc.change(words, { scene, how: "edit", run });
+  say(`${words}.`);
+}
+
+/** Rename a part; returns what is wrong with the name. */
+function rename(id, name) {
+  const problem = act.rename(id, name);
+  if (!problem) say(`Called ${name} now.`);
+  return problem;
+}
+
+/** A field for the name where the part is. */
+function renameInPlace(id, event) {
+  const box = $("plane-view").getBoundingClientRect(), input = make("input", { className: "rename", value: id.slice(id.indexOf(":") + 1), "aria-label": "Name", autocomplete: "off" });
+  if (id.startsWith("face:")) return;
+  input.style.left = `${event.clientX - box.left}px`;
+  input.style.top = `${event.clientY - box.top}px`;
+  const done = (take) => { if (take && input.isConnected) { const problem = rename(id, input.value.trim()); if (problem) say(problem); } input.remove(); };
+  input.onkeydown = (e) => { if (e.key === "Enter" || e.key === "Escape") done(e.key === "Enter"); e.stopPropagation(); };
+  input.onblur = () => done(true);
+  $("plane-view").append(input);
+  input.focus();
+  input.select();
+}
+
+/** Something was let go: it is asked about once more, exactly, and said where it has come to. */
+async function dropped(words) {
+  await live.ask("build");
+  say(`${words()}.`);
+}
+
+function toStart() {
+  player.pause();
+  player.seek(0);
+}
+
+/** Mark what is selected, everywhere. */
+function showSelection() {
+  if (!doc.sound) return;
+  const { parts } = board, known = new Set(parts.map(({ id }) => id));
+  for (const id of [...doc.selection]) if (!known.has(id)) doc.selection.delete(id);
+  plane.lit = new Set(doc.selection);
+  for (const face of parts.filter(({ id, kind }) => kind === "face" && doc.selection.has(id))) for (const { id, index } of parts) if (face.members.includes(index)) plane.lit.add(id);
+  $("delete").disabled = $("duplicate").disabled = doc.selection.size === 0 || !ready();
+  showParts($("parts"), parts, { value: doc.scene.value, selection: doc.selection, wrong: plane.wrong, pick: act.pick });
+  inspector.show();
+  plane.render();
+}
+
+/** Ask about the scene as it is now, and show the answer. */
+async function refresh(how) {
+  document.querySelector(".stage").setAttribute("aria-busy", "true");
+  save();
+  const { scene } = doc, { value } = scene;
   try {
-    state.read = readJson(text);
+    if (!isNamed(state.scene) && value.bodies && !Object.keys(value.bodies).length) showNothing();
+    else {
+      const held = board.gesture || how === "build" ? board.held ?? [] : [];
+      const path = state.scene === OWN ? "/v1/scenes" : catalogue.get(state.scene).path;
+      const result = await worker.run((send) => answerScene(send, path, { scene, name: state.scene, how, held, stop: state.window ?? (how === "drag" ? player.stop : null) }));
+      if (result) take(result, how, scene, path);
+      else if (live.next === null) complain([{ pointer: "", detail: "Cancelled: the picture is of the answer before" }]);
+    }
   } catch (error) {
-    if (!(error instanceof NotJson)) throw error;
-    const line = text.slice(0, error.offset).split("\n").length;
-    return complain([{ pointer: null, detail: `this is not JSON yet, in line ${line}: ${error.message}`, place: [error.offset, error.offset + 1] }]);
+    if (live.next === null || how === "drag") complain(error instanceof Refusal ? error.errors : [{ pointer: "", detail: `The service cannot be reached (${error.message})` }]);
+    if (how !== "text" && doc.sound) sketch(how);
   }
-  if (rebuild) sliders($("sliders"), $("place-sliders"), state.read, (pointer, next) => edited(replaced(state.text, state.read.places, pointer, next), true, false));
-  return refresh();
+  document.querySelector(".stage").setAttribute("aria-busy", "false");
 }
 
-async function refresh() {
-  if (busy) { again = true; return; }
-  setBusy(true);
-  do {
-    again = false;
-    save();
-    try {
-      await answerState();
-    } catch (error) {
-      complain(error instanceof Refusal ? error.errors : [{ pointer: "", detail: `The service cannot be reached (${error.message}).` }]);
-    }
-  } while (again);
-  setBusy(false);
-}
-
-/** The text with what the picture needs in place of `times` and `outputs`; numbers stay as they are written. */
-function questionText(stop) {
-  const { value, places } = state.read;
-  const times = `{"start": 0, "stop": ${stop}, "count": ${SAMPLES}}`;
-  if (isNamed(state.scene)) return "times" in value ? replaced(state.text, places, "/times", times) : state.text;
-  const outputs = JSON.stringify(OUTPUTS);
-  const add = [["times", times], ["outputs", outputs]];
-  let text = state.text;
-  for (const [name, content] of add.filter(([name]) => name in value).sort((a, b) => placeOf(places, `/${b[0]}`)[0] - placeOf(places, `/${a[0]}`)[0])) text = replaced(text, places, `/${name}`, content);
-  const missing = add.filter(([name]) => !(name in value)).map(([name, content]) => `"${name}": ${content}`);
-  const end = text.lastIndexOf("}");
-  return missing.length ? `${text.slice(0, end).trimEnd()}${Object.keys(value).length ? "," : ""}\n  ${missing.join(",\n  ")}\n}` : text;
-}
-
-function stopOf(value) {
-  const { times } = value;
-  const given = Array.isArray(times) ? Math.max(...times) : times?.stop;
-  return given > 0 ? given : 2;
-}
-
-function setBusy(now) {
-  busy = now;
-  document.querySelector(".stage").setAttribute("aria-busy", String(now));
-}
-
-async function answerState() {
-  const { value } = state.read, path = catalogue.get(state.scene).path;
-  if (value === null || typeof value !== "object" || Array.isArray(value)) throw new Refusal({ detail: "a scene is an object" });
-  const wanted = stopOf(value);
-  const result = await worker.run(async (send) => {
-    let stop = state.window ?? Math.min(wanted, LONGEST);
-    let text = questionText(stop), asked = await send(path, text);
-    const { period } = asked.answer;
-    // A fast motion over a long time would be a blur: some periods are shown.
-    if (state.window === null && period && stop > 12 * period) {
-      stop = Number((12 * period).toPrecision(3));
-      text = questionText(stop);
-      asked = await send(path, text);
-    }
-    return { answer: asked.answer, text, path };
-  });
-  if (!result) return complain([{ pointer: "", detail: "Cancelled: the picture is of the answer before" }]);
+function take(result, how, asked, path) {
+  if (doc.scene === asked && result.scene !== asked) {
+    doc.complete(result.scene);
+    $("editor").value = doc.text;
+    if (how !== "drag") showSelection();
+  }
   complain([]);
-  show(result);
+  show(result, how, path);
 }
 
-function show({ answer: next, text, path }) {
+/** Where nothing can be computed, what is described is shown as it stands. */
+function sketch(how) {
+  if (isNamed(state.scene)) return;
+  answer = null;
+  model = new SceneModel(doc.scene.value, null);
+  showView(how);
+  player.setSpan(player.stop, 4);
+}
+
+function showNothing() {
+  complain([]);
+  answer = null;
+  model = new SceneModel(doc.scene.value, null);
+  showView("open");
+  for (const name of ["player", "curves-line", "chart"]) $(name).hidden = true;
+  $("summary").textContent = "Nothing here yet: drag a part from the palette into the picture.";
+  for (const name of ["answer", "warnings", "events"]) $(name).replaceChildren();
+  $("plane-canvas").setAttribute("aria-label", $("summary").textContent);
+}
+
+function show({ answer: next, text }, how, path) {
   answer = next;
   const value = JSON.parse(text);
   const { description, trajectory } = isNamed(state.scene) ? drawn(state.scene, value, answer) : { description: value, trajectory: answer.trajectory };
-  answer.shown = trajectory;
   model = new SceneModel(description, trajectory);
-  showView();
   const time = trajectory?.time || [0], events = (answer.events || []).map((e) => ({ ...e, label: sayEvent(e) }));
   const stop = Math.max(time.at(-1), ...events.map((e) => e.time || 0)), still = !(stop > 0);
   for (const name of ["player", "curves-line", "chart"]) $(name).hidden = still;
+  showView(how);
   player.setSpan(stop || 1, Math.max(4, Math.min(15, 3 * stop)), events);
   $("window").placeholder = still ? "" : written(stop, 4);
   tell(events);
-  fillCurves();
+  curves.offer(trajectory);
   showRequests({ "the motion": [path, value] });
 }
 
-function showView() {
+function showView(how) {
   $("plane-view").hidden = model.space;
   $("space-view").hidden = !model.space;
   if (model.space) {
     space ??= new SpaceView($("space-view"));
     space.showForces = $("forces").checked;
     view = space;
-  } else view = plane;
-  view.show(model);
-  $("force-scale").textContent = model.forceScale ? `The longest is ${written(model.forceScale, 3)} N.` : "";
+    space.show(model);
+  } else {
+    view = plane;
+    plane.show(model, how === "open" || how === "text");
+  }
+  model.seek(player.time);
+  $("force-scale").textContent = model.forceScale ? `The longest force is ${written(model.forceScale, 3)} N.` : "";
 }
 
 function tell(events) {
-  const m = answer.model, accuracy = answer.accuracy, moving = model.bodies.map((b) => b.name).join(", ");
-  const span = $("player").hidden ? "" : ` over ${written(player.stop, 4)} s`;
-  const last = answer.ended && answer.ended !== "horizon" ? events.at(-1) : null;
-  const ended = last ? ` It ends at ${written(last.time, 8)} s: ${sayEvent(last)}.` : events.length ? ` ${events.length} event${events.length === 1 ? "" : "s"} on the way.` : "";
-  const words = `${moving}: ${m.name}, ${m.degrees_of_freedom} degree${m.degrees_of_freedom === 1 ? "" : "s"} of freedom${span}.${ended}`;
+  const words = headline(answer, model, player.stop);
   $("summary").textContent = words;
   for (const canvas of [$("plane-canvas"), $("space-canvas")]) canvas.setAttribute("aria-label", `${titleNow()}. ${words}`);
-  const list = [["Model", m.name], ["Why", m.why], ["Period", answer.period ? `${written(answer.period, 10)} s` : "none"]];
-  if (m.noticed?.length) list.push(["Noticed", m.noticed.join("; ")]);
-  if (accuracy) list.push(["Accuracy", accuracy.error === 0 ? "exact" : `below ${power(accuracy.error)} of the largest value (${howInWords(accuracy.how)})`]);
-  for (const [name, f] of Object.entries(answer.forces || {})) list.push([`${name}, at the start`, f.determined ? `${written(f.value, 8)} ${f.unit}` : "not determined"]);
-  $("answer").replaceChildren(...list.flatMap(([name, text]) => [make("dt", { textContent: name }), make("dd", { textContent: text })]));
-  $("warnings").replaceChildren(...answer.warnings.map((w) => make("p", { className: "notice", textContent: w.detail })));
-  const shown = events.slice(0, MOST_EVENTS).map((e) => {
-    const button = make("button", { type: "button", textContent: `${written(e.time, 8)} s: ${sayEvent(e)}` });
-    button.onclick = () => { player.pause(); player.seek(e.time); };
-    return make("li", {}, button);
-  });
-  if (events.length > MOST_EVENTS) shown.push(make("li", { textContent: `and ${events.length - MOST_EVENTS} more` }));
-  $("events").replaceChildren(...shown);
+  showModel(answer);
+  showEvents(events, (time) => { player.pause(); player.seek(time); });
 }
 
-const EVENTS = {
-  touch: "touches", "lift-off": "lifts off", slip: "begins to slip", stick: "sticks", roll: "rolls without slip", settle: "has come to rest after ever smaller bounces",
-  taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "has come to a length of zero",
-  "no-motion": "has no possible motion", "several-motions": "has several possible motions", "end-of-chain": "has come to its end",
-};
-
-const sayEvent = (event) => `${event.name} ${EVENTS[event.kind] || event.kind.replaceAll("-", " ")}`.trim();
-
-const varies = ({ data }) => data.some((x) => x !== data[0]);
-
-/** Groups of columns of one unit, to choose from. */
-function fillCurves() {
-  const groups = new Map();
-  for (const [name, { unit, values }] of Object.entries(answer.shown?.columns || {})) {
-    const vector = Array.isArray(values[0]);
-    const kind = { m: "Positions (m)", "m/s": "Velocities (m/s)", rad: "Angles (rad)", "rad/s": "Angular velocities (rad/s)", N: "Forces (N)", "N m": "Torques (N m)", J: "Energies (J)", 1: "Attitudes" }[unit] || unit;
-    if (!groups.has(kind)) groups.set(kind, []);
-    const list = groups.get(kind);
-    if (vector) values[0].forEach((_, k) => list.push({ label: `${name.replace(".position", "").replace(".velocity", "")} ${unit === "1" && values[0].length === 4 ? "wxyz"[k] : "xyz"[k]}`, data: values.map((v) => v[k]) }));
-    else list.push({ label: name, data: values });
-  }
-  answer.groups = groups;
-  const before = $("curves").value;
-  $("curves").replaceChildren(...[...groups.keys()].map((kind) => make("option", { textContent: kind })));
-  if (groups.has(before)) $("curves").value = before;
-  else $("curves").value = ["Angles (rad)", ...groups.keys()].find((kind) => groups.get(kind)?.some(varies)) ?? [...groups.keys()][0] ?? "";
-  showCurves();
-}
-
-function showCurves() {
-  const list = answer?.groups.get($("curves").value);
-  if (!list) return chart.clear();
-  const colors = ["deep", "warm", "third", "stable", "separatrix", "soft"];
-  const series = list.slice(0, 12).map(({ label }, i) => ({ label, color: colors[i % 6], dash: i < 6 ? undefined : [6, 4] }));
-  chart.show(series, [answer.shown.time, ...list.slice(0, 12).map((c) => c.data)]);
-  $("chart").setAttribute("aria-label", `${$("curves").value} over time: ${series.map((s) => s.label).join(", ")}`);
-}
-
-/** Write every fault at its slider and above the text, where a press selects its place in the text. */
+/** Show every fault where it is: in the picture, at its slider, and above the text, where a press selects its place. */
 function complain(faults) {
-  const places = state.read?.places || new Map();
+  const places = doc.scene?.places || new Map(), value = doc.sound ? doc.scene.value : {};
   const rest = markFaults([$("sliders"), $("place-sliders")], faults);
   $("problem").textContent = rest.filter((f) => f.pointer === "").map((f) => `${f.detail}.`).join(" ");
   mark($("editor"), faults.length > 0);
-  document.querySelector(".stage").classList.toggle("stale", faults.length > 0);
+  document.querySelector(".stage").classList.toggle("stale", faults.length > 0 && (!doc.sound || isNamed(state.scene)));
+  plane.wrong = new Set(faults.flatMap((f) => [partOf(f.pointer, value), ...facesAt(f.pointer, value)]).filter(Boolean));
+  $("misfits").replaceChildren(...faults.filter((f) => f.pointer).map((fault) => make("li", { textContent: faultInWords(fault, value) })));
+  if (doc.sound) showParts($("parts"), board.parts, { value, selection: doc.selection, wrong: plane.wrong, pick: act.pick });
+  plane.render();
   $("faults").replaceChildren(...faults.map((fault) => {
     const button = make("button", { type: "button", className: "fault", textContent: `${fault.pointer || "scene"}: ${[fault.detail, fault.remedy].filter(Boolean).join("; ")}` });
     button.onclick = () => {
@@ -255,13 +308,13 @@ function complain(faults) {
 }
 
 function save() {
-  writeState({ scene: state.scene, window: state.window, json: state.own ? state.text : null });
+  const own = state.changed || state.scene === OWN;
+  writeState({ scene: state.scene, window: state.window, json: own ? doc.text : null, faces: own && doc.waiting.length ? JSON.stringify(doc.waiting) : null });
 }
 
 function restore() {
-  const given = readState();
-  const name = catalogue.has(given.scene) ? given.scene : "double-pendulum";
-  choose(name, given.json || null);
+  const given = readState(), name = catalogue.has(given.scene) || given.scene === OWN ? given.scene : given.json ? OWN : "double-pendulum";
+  choose(name, given.json || null, given.faces ? JSON.parse(given.faces) : []);
   if (Number(given.window) > 0) {
     state.window = Number(given.window);
     $("window").value = state.window;
@@ -270,10 +323,11 @@ function restore() {
 
 const { scenes } = await get("/v1/scenes");
 catalogue = new Map(scenes.map((scene) => [scene.name, scene]));
-$("scene").replaceChildren(...[...Map.groupBy(scenes, kindOf)].map(([label, entries]) => make("optgroup", { label }, ...entries.map(({ name }) => make("option", { value: name, textContent: titled(name) })))));
+const groups = [...Map.groupBy(scenes, kindOf)].map(([label, entries]) => make("optgroup", { label }, ...entries.map(({ name }) => make("option", { value: name, textContent: titled(name) }))));
+$("scene").replaceChildren(make("option", { value: OWN, textContent: "A scene of your own" }), ...groups);
 restore();
-await new Promise((done) => { const wait = () => (model || $("problem").textContent ? done() : setTimeout(wait, 20)); wait(); });
-player.begin();
-await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
+await live.running;
+if (state.scene !== OWN) player.begin();
+await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
 document.body.dataset.ready = "yes";
 addEventListener("hashchange", restore);

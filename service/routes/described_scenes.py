@@ -162,6 +162,15 @@ DESCRIBED_SCENES = (
 def described_examples() -> list[dict[str, Any]]:
     """Return the described scenes as entries of the catalogue of scenes."""
     return [
-        {"name": name, "path": PATH, "summary": one.summary, "outputs": list(OUTPUTS), "example": dict(one.question)}
+        {
+            "name": name,
+            "path": PATH,
+            "title": one.title,
+            "topic": one.topic,
+            "asks": one.asks,
+            "summary": one.summary,
+            "outputs": list(OUTPUTS),
+            "example": dict(one.question),
+        }
         for name, one in scene_catalogue().items()
     ]

@@ -22,6 +22,10 @@ class CatalogueScene:
 
     Attributes
     ----------
+    title, topic : str
+        As a gallery names it, and under what.
+    asks : str
+        The question that its motion answers.
     summary : str
         What it shows.
     model : str
@@ -32,6 +36,9 @@ class CatalogueScene:
         As it is sent to ``POST /v1/scenes``.
     """
 
+    title: str
+    topic: str
+    asks: str
     summary: str
     model: str
     reference: str

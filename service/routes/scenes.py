@@ -60,6 +60,11 @@ class SceneEntry(View):
 
     name: str = Field(description="Of a named scene the last step of the path.")
     path: str = Field(description="Where to send questions about it; described scenes go to /v1/scenes.")
+    title: str = Field(description="As a gallery names it.")
+    topic: str = Field(description="Under which a gallery lists it.")
+    asks: str | None = Field(
+        description="The question that its motion answers; null for scenes with endpoints of their own."
+    )
     summary: str
     outputs: list[str] = Field(description="Names of what it answers.")
     example: dict[str, Any] = Field(description="A question.")
@@ -213,6 +218,9 @@ def scene_entries(scenes: tuple[type[NamedScene], ...]) -> list[dict[str, Any]]:
         {
             "name": name_of(scene),
             "path": f"/v1/scenes/{name_of(scene)}",
+            "title": name_of(scene).replace("-", " ").capitalize(),
+            "topic": "With endpoints of their own",
+            "asks": None,
             "summary": summary_of(scene),
             "outputs": list(scene.outputs),
             "example": dict(next(iter(scene.examples.values())).question),

@@ -1,0 +1,97 @@
+// What happens in a scene, in one or two sentences; every number is from the answer.
+import { written } from "./dom.js";
+import { norm } from "./vectors.js";
+
+const EVENTS = {
+  touch: "touches", "lift-off": "lifts off", slip: "begins to slip", stick: "sticks", roll: "rolls without slipping", settle: "has come to rest after ever smaller bounces",
+  taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "has come to a length of zero",
+  "no-motion": "has no possible motion", "several-motions": "has several possible motions", "end-of-chain": "has come to its end", switch: "changes its law",
+};
+const DIGITS = 3, SAME = 1e-9;
+/** Digits of numbers in sentences; relative difference below which two are called equal. */
+
+export const sayEvent = (event) => `${event.name} ${EVENTS[event.kind] || event.kind.replaceAll("-", " ")}`.trim();
+
+const seconds = (t) => `${written(t, DIGITS)} s`;
+const listed = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`);
+const subject = (names) => (names.length > 3 ? `${names.length} bodies` : listed(names));
+
+/** Direction of a vector of the plane in words; in space only up and down have one. */
+function direction(v) {
+  const vertical = v.length === 3 ? v[2] : v[1], across = v.length === 3 ? Math.hypot(v[0], v[1]) : Math.abs(v[0]);
+  if (Math.abs(vertical) <= 1e-9 * across) return v.length === 3 ? "level" : v[0] > 0 ? "to the right" : "to the left";
+  if (across <= 1e-9 * Math.abs(vertical)) return vertical > 0 ? "upward" : "downward";
+  return vertical > 0 ? "obliquely upward" : "obliquely downward";
+}
+
+/** Names of the bodies of a part, from its coordinates. */
+const bodiesOf = (part, names) => names.filter((name) => part.coordinates.some((c) => c === name || c.startsWith(`${name}.`) || c.startsWith(`${name} `)));
+
+/** How bodies move that are accelerated alike all the time. */
+function constant(answer, names) {
+  const all = names.map((name) => [name, answer.accelerations?.[name]?.linear]).filter(([, a]) => a), moving = all.filter(([, a]) => norm(a) > 0);
+  const turning = names.map((name) => [name, answer.accelerations?.[name]?.angular]).filter(([, a]) => a && norm([a].flat()) > 0);
+  if (moving.length) {
+    const sizes = moving.map(([, a]) => norm(a)), alike = sizes.every((s) => Math.abs(s - sizes[0]) <= SAME * sizes[0]);
+    if (alike && moving.length > 1) return `${subject(moving.map(([name]) => name))} are accelerated by ${written(sizes[0], DIGITS)} m/s²: ${moving.slice(0, 3).map(([name, a]) => `${name} ${direction(a)}`).join(", ")}.`;
+    return `${sentence(listed(moving.slice(0, 3).map(([name, a]) => `${name} is accelerated ${direction(a)} by ${written(norm(a), DIGITS)} m/s²`)))}.`;
+  }
+  if (turning.length) return `${sentence(turning[0][0])} turns ever faster, by ${written(norm([turning[0][1]].flat()), DIGITS)} rad/s².`;
+  return `${sentence(subject(names))} ${names.length > 1 ? "move" : "moves"} steadily.`;
+}
+
+const sentence = (text) => text.replace(/^./, (c) => c.toUpperCase());
+
+/** Frequencies and rates of growth of a linear motion. */
+function modesInWords(modes, names) {
+  const swings = modes.filter((m) => m.frequency > 0), periods = [...new Set(swings.map((m) => written((2 * Math.PI) / m.frequency, DIGITS)))];
+  const fading = swings.length && swings.every((m) => m.growth_rate < 0), growing = modes.some((m) => m.growth_rate > 0);
+  if (!swings.length) return growing ? `${sentence(subject(names))} run${names.length > 1 ? "" : "s"} away from the equilibrium.` : `${sentence(subject(names))} come${names.length > 1 ? "" : "s"} to rest without swinging.`;
+  const words = `${sentence(subject(names))} oscillate${names.length > 1 ? "" : "s"} with ${periods.length > 1 ? "the periods" : "a period of"} ${listed(periods.slice(0, 4))} s`;
+  return `${words}${fading ? ", ever less" : growing ? ", ever more" : ""}.`;
+}
+
+/** One part that no other acts on. */
+function partInWords(part, answer, names) {
+  const many = names.length > 1;
+  if (part.name === "rest") return `${sentence(subject(names))} stay${many ? "" : "s"} at rest.`;
+  if (part.name === "constant acceleration") return constant(answer, names);
+  if (part.modes?.length) return modesInWords(part.modes, names);
+  if (part.degrees_of_freedom === 0) return `${sentence(subject(names))} ${many ? "are" : "is"} driven: nothing is free.`;
+  if (part.period) return `${sentence(subject(names))} swing${many ? "" : "s"} with a period of ${seconds(part.period)}${part.precession ? ", and goes round meanwhile" : ""}.`;
+  if (part.name === "steady precession") return `${sentence(subject(names))} precess${many ? "" : "es"} steadily.`;
+  if (part.name === "steady spin") return `${sentence(subject(names))} spin${many ? "" : "s"} steadily.`;
+  if (part.name === "free rotation") return `${sentence(subject(names))} tumble${many ? "" : "s"} freely.`;
+  return `${sentence(subject(names))} move${many ? "" : "s"} in ${part.degrees_of_freedom} degree${part.degrees_of_freedom === 1 ? "" : "s"} of freedom.`;
+}
+
+/** A body that stands on two contacts and leaves one tips about the other. */
+function tipping(event, model) {
+  if (event.kind !== "lift-off" || model.space) return null;
+  const c = model.connections.find(({ label }) => label === event.name), body = c?.place && model.place(c.place).body;
+  if (!body || !c.on || c.place === body.name) return null;
+  const others = model.connections.filter((o) => o !== c && o.on && model.place(o.place).body === body && JSON.stringify(o.on) === JSON.stringify(c.on));
+  if (others.length !== 1) return null;
+  model.seek(event.time);
+  const [mine, other] = [c, others[0]].map((o) => model.place(o.place).point), { along } = model.face(c.on);
+  const side = (other[0] - mine[0]) * along[0] + (other[1] - mine[1]) * along[1] > 0 ? "right" : "left";
+  return `${sentence(body.name)} tips about its ${side} edge ${event.time > 0 ? `after ${seconds(event.time)}` : "at once"}.`;
+}
+
+const MENTIONED = new Set(["touch", "lift-off", "slip", "stick", "roll", "settle", "taut", "slack", "stop", "release", "singular", "end-of-chain", "switch"]);
+
+/** Headline of an answer; `model` is its scene, whose time may be moved. */
+export function headline(answer, model, stop) {
+  const names = model.bodies.map((b) => b.name), events = answer.events || [], { now } = model;
+  if (answer.problem) return `${sentence(answer.problem.explanation ?? "What happens is not determined")}.`.replace(/\.\.$/, ".");
+  const parts = answer.model.apart?.length > 1 ? answer.model.apart.map((part) => [part, bodiesOf(part, names)]).filter(([, own]) => own.length) : [[{ ...answer.model, period: answer.period, modes: answer.model.apart?.[0]?.modes ?? [], precession: answer.model.apart?.[0]?.precession }, names]];
+  const moving = parts.filter(([part]) => part.name !== "rest");
+  const motion = (moving.length ? moving : parts).slice(0, 2).map(([part, own]) => partInWords(part, answer, own)).join(" ");
+  const first = events.find((e) => MENTIONED.has(e.kind));
+  const words = first ? tipping(first, model) ?? `${sentence(sayEvent(first))} ${first.time > 0 ? `after ${seconds(first.time)}` : "at once"}.` : "";
+  model.seek(now);
+  const last = answer.ended && answer.ended !== "horizon" ? events.at(-1) : null;
+  const end = last && last !== first ? ` The motion ends at ${seconds(last.time)}: ${sayEvent(last)}.` : "";
+  const more = events.length > 1 && !end ? ` ${events.length} events in ${seconds(stop)}.` : "";
+  return [motion, words].filter(Boolean).join(" ") + end + more;
+}
