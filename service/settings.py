@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from ipaddress import ip_network
 from typing import Annotated, Literal
 
@@ -26,6 +27,17 @@ def _networks(value: str) -> str:
     return value.replace(" ", "")
 
 
+_ORIGIN = re.compile(r"https?://(\*\.)?[A-Za-z0-9.-]+(:(\d{1,5}|\*))?")
+
+
+def _origins(value: str) -> str:
+    """Refuse what is no list of origins: it is written into a header, where a semicolon would end the rule."""
+    for entry in filter(None, value.replace(",", " ").split()):
+        if not _ORIGIN.fullmatch(entry):
+            raise ValueError(f"{entry!r} is no origin such as https://learning.example.org")
+    return " ".join(value.replace(",", " ").split())
+
+
 class Settings(BaseSettings):
     """The service's settings; the description of each field is its documentation."""
 
@@ -44,6 +56,12 @@ class Settings(BaseSettings):
         default="",
         description="Host names under which the service is addressed, separated by commas, *.example.org with all "
         "below; others are refused (421). IP addresses and localhost are always accepted; empty accepts every name.",
+    )
+
+    frame_ancestors: Annotated[str, AfterValidator(_origins)] = Field(
+        default="",
+        description="Origins whose pages may show the pages of this service in a frame, such as a learning platform's "
+        "https://learning.example.org, separated by commas; empty allows none.",
     )
 
     keep_alive_seconds: int = Field(

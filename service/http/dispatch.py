@@ -206,7 +206,13 @@ class Dispatcher:
         reply = route.content()
         if b"accept" in context.headers:
             negotiated(context.headers[b"accept"], (route.media_type,))
-        await context.page(reply.body, reply.media_type, reply.status, kept=route.fixed)
+        await context.page(
+            reply.body,
+            reply.media_type,
+            reply.status,
+            kept=route.fixed,
+            frame_ancestors=self._settings.frame_ancestors,
+        )
 
     async def unknown_host(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request to a name that is not the service's (a page may have its own name lead to this address)."""

@@ -26,14 +26,16 @@ VARY: Header = (b"vary", b"accept")
 _VARY_ENCODING: Header = (b"vary", b"accept-encoding")
 _NOT_STORED: Header = (b"cache-control", b"no-store")
 _REVALIDATE: Header = (b"cache-control", b"no-cache")
-_PAGE_HEADERS: tuple[Header, ...] = (
-    (
-        b"content-security-policy",
-        b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
-        b"connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-    ),
-    (b"referrer-policy", b"no-referrer"),
-)
+
+
+def _page_headers(frame_ancestors: str) -> tuple[Header, ...]:
+    """Return what guards a page: it loads and asks this service alone, and only these origins may frame it."""
+    framed_by = frame_ancestors or "'none'"
+    policy = (
+        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
+        f"connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors {framed_by}"
+    )
+    return ((b"content-security-policy", policy.encode()), (b"referrer-policy", b"no-referrer"))
 
 
 class RequestContext:
@@ -99,9 +101,14 @@ class RequestContext:
         else:
             await self._respond(200, answer.body, answer.headers)
 
-    async def page(self, body: bytes, media_type: bytes, status: int, *, kept: bool = False) -> None:
-        """Send the document of a GET route, which clients revalidate; compressed once where it is `kept`."""
-        guards = _PAGE_HEADERS if media_type.startswith(b"text/html") else ()
+    async def page(
+        self, body: bytes, media_type: bytes, status: int, *, kept: bool = False, frame_ancestors: str = ""
+    ) -> None:
+        """Send the document of a GET route, which clients revalidate; compressed once where it is `kept`.
+
+        `frame_ancestors` are the origins whose pages may show it in a frame, separated by blanks.
+        """
+        guards = _page_headers(frame_ancestors) if media_type.startswith(b"text/html") else ()
         page = Representation(body, (b"content-type", media_type), (_REVALIDATE, *guards))
         if status == 200:
             await self.answer(page, kept=kept)

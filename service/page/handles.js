@@ -1,6 +1,6 @@
 // The handles of what is selected: where they are, and what the scene becomes when one is dragged to a point.
 import { outlineOf, homogeneousInertia } from "./outlines.js";
-import { tidy, withFace } from "./scene_changes.js";
+import { tidy, turnedTo, withFace } from "./scene_changes.js";
 import { pointerTo } from "./scene_text.js";
 import { gridStep, nearestPlace, toAngle, toGrid } from "./snapping.js";
 import { add, norm, scaled, sub, turned } from "./vectors.js";
@@ -12,7 +12,7 @@ const degreesOf = (v) => (Math.atan2(v[1], v[0]) * 180) / Math.PI;
 const onGrid = (v, step) => v.map((x) => toGrid(x, step));
 
 /** A round number that vectors of this size are drawn by, so that they fit the picture. */
-const roundScale = (size) => 10 ** Math.ceil(Math.log10(Math.max(size, 0.3) / 3));
+const roundScale = (size) => (size > 0 ? 10 ** Math.ceil(Math.log10(size / 3)) : 1);
 
 /** Handles of a body, connection or face, `{name, at, from?, words, drag(point) -> scene, live?}`; `from` is what it is tied to by a line. */
 export function handlesOf(part, { scene, model, px }) {
@@ -42,7 +42,7 @@ function ofBody({ name }, scene, model, px) {
   const reach = outline?.radius ?? Math.max(0, ...(outline?.corners ?? outline?.bar ?? outline?.spokes ?? []).map(norm));
   handles.push({
     name: "angle", at: add(body.at, turned(body.angle, [reach + TURN * px, 0])), from: body.at, words: "angle",
-    drag: (point) => scene.with(`${pointer}/angle`, { degrees: toAngle(degreesOf(sub(point, body.at))) }),
+    drag: (point) => turnedTo(scene, name, toAngle(degreesOf(sub(point, body.at))), model),
     say: (s) => `angle ${s.at(`${pointer}/angle`)?.degrees ?? 0} degrees`,
   });
   return [...handles, ...sizes(name, body, outline, scene, model, px)];

@@ -112,7 +112,7 @@ export class Inspector {
       fault.textContent = problem ?? "";
       mark(input, problem !== null);
     };
-    return make("label", { className: "field" }, make("span", { textContent: field.words }), input, make("span", { className: "unit", textContent: field.unit }), fault);
+    return make("label", { className: "field" }, make("span", { textContent: field.words }), input, " ", make("span", { className: "unit", textContent: field.unit }), fault);
   }
 
   /** One field for each component; a vector that is left out appears whole as soon as one is given. */

@@ -84,7 +84,7 @@ function string(d, model, c) {
     // Parts that run side by side, as in a tackle, are drawn beside each other.
     const aside = lanes[i] ? scaled(quarter(unit(sub(part[1], part[0]))), 7 * lanes[i] * d.px) : [0, 0];
     const heavy = c.kind === "chain";
-    if (slack) d.line(sagging(part, d, c, model), "warm", 1.5, [3, 4]);
+    if (slack) d.line(sagging(part, d), "warm", 1.5, [3, 4]);
     else d.line(part.map((p) => add(p, aside)), "warm", heavy ? 5 : 2, heavy ? [3, 6] : []);
   });
   for (const { center, radius, from, to, sense } of arcs) {

@@ -17,7 +17,10 @@ export class Player {
     for (const factor of [0.1, 0.25, 0.5, 1, 2, 5]) {
       this.rate.append(make("option", { value: factor, textContent: `${factor} ×`, selected: factor === 1 }));
     }
-    panel.append(this.button, make("div", { className: "track" }, this.slider, this.marks), this.shown, this.rate);
+    this.events = [];
+    this.ahead = make("button", { type: "button", textContent: "Next event", hidden: true });
+    this.ahead.onclick = () => this.next();
+    panel.append(this.button, this.ahead, make("div", { className: "track" }, this.slider, this.marks), this.shown, this.rate);
     this.button.onclick = () => (this.playing ? this.pause() : this.play());
     this.slider.oninput = () => this.seek((this.slider.value / 1000) * this.stop);
     this.rate.onchange = () => { this.factor = Number(this.rate.value); };
@@ -28,10 +31,12 @@ export class Player {
   /** Play from 0 to `stop` (s of motion) in about `seconds` (s of the clock); `events` are marked. */
   setSpan(stop, seconds, events = []) {
     this.stop = stop;
+    this.events = events.filter((e) => e.time !== null && e.time <= stop);
+    this.ahead.hidden = this.events.length === 0;
     this.speed = stop / seconds;
     this.time = Math.min(this.time, stop);
     this.marks.replaceChildren(
-      ...events.filter((e) => e.time !== null && e.time <= stop).map((e) => {
+      ...this.events.map((e) => {
         const mark = make("span", { title: `${e.label}, ${written(e.time)} s` });
         mark.style.left = `${(100 * e.time) / stop}%`;
         return mark;
@@ -65,6 +70,31 @@ export class Player {
       requestAnimationFrame(step);
     };
     requestAnimationFrame(step);
+  }
+
+  /** Play from the time shown to the end, once; resolves there. */
+  once() {
+    return new Promise((done) => {
+      let before = this.time;
+      const ended = (time) => {
+        if (!this.playing || time < before) {
+          this.listeners.splice(this.listeners.indexOf(ended), 1);
+          this.pause();
+          done();
+        }
+        before = time;
+      };
+      this.play();
+      this.listeners.push(ended);
+    });
+  }
+
+  /** Go to the first of the marked events after the time shown. */
+  next() {
+    const later = this.events.filter(({ time }) => time > this.time + 1e-9 * this.stop);
+    this.pause();
+    this.seek(later[0]?.time ?? this.stop);
+    return later[0] ?? null;
   }
 
   /** Begin by itself, unless the reader prefers less motion. */

@@ -1,5 +1,5 @@
 // Curves against time, with the playhead; drawn by uPlot.
-import { color, make, onTheme } from "./dom.js";
+import { color, make, onTheme, written } from "./dom.js";
 import uPlot from "./vendor/uplot.js";
 
 /** A chart in `panel`; `player` moves its playhead, a press on the chart moves the player. */
@@ -17,22 +17,26 @@ export class TimeChart {
     this.plot?.destroy();
     this.panel.replaceChildren();
     const ink = { stroke: color("soft"), grid: { stroke: color("line"), width: 1 }, ticks: { stroke: color("line"), width: 1 } };
-    const values = (plot, ticks) => ticks.map((v) => (v === 0 ? "0" : Math.abs(v) >= 1e4 || Math.abs(v) < 1e-2 ? v.toExponential(digitsBeside(v, ticks)) : String(Number(v.toPrecision(4)))));
+    const values = tickWords;
     this.plot = new uPlot(
       {
         width: Math.max(200, this.panel.clientWidth),
         height: this.height,
         scales: { x: { time: false }, y: options.range ? { range: options.range } : {} },
-        axes: [{ ...ink, size: 30, values }, { ...ink, size: 58, values, label: options.unit || undefined, labelSize: 18, labelFont: "12px system-ui" }],
-        cursor: { drag: { x: false, y: false }, points: { show: false }, y: false },
-        legend: { live: false, markers: { width: 2 } },
-        series: [{ label: "time" }, ...series.map((s) => ({ label: s.label, stroke: color(s.color), width: s.width || 2, dash: s.dash, points: { show: false } }))],
+        axes: [{ ...ink, size: options.live ? 44 : 30, values, label: options.live ? "time (s)" : undefined, labelSize: 16, labelFont: "12px system-ui" }, { ...ink, size: 58, values, label: options.unit || undefined, labelSize: 18, labelFont: "12px system-ui" }],
+        // Live curves are brought closer by dragging across them, and read at the crosshair.
+        cursor: { drag: { x: Boolean(options.live), y: false, dist: 8 }, points: { show: Boolean(options.live), size: 6 }, y: Boolean(options.live) },
+        legend: { live: Boolean(options.live), markers: { width: 2, dash: (plot, i) => (plot.series[i].dash ? "dashed" : "solid") } },
+        series: [{ label: options.live ? "time (s)" : "time", value: (plot, v) => (v === null ? "" : written(v, 5)) }, ...series.map((s) => ({ label: s.label, stroke: color(s.color), width: s.width || 2, dash: s.dash, value: (plot, v) => (v === null || v === undefined ? "" : written(v, 5)), points: { show: false } }))],
       },
       data,
       this.panel,
     );
     this.plot.over.append(this.head);
-    this.plot.over.addEventListener("click", (event) => this.player.seek(this.plot.posToVal(event.offsetX, "x")));
+    // A press moves the playhead; the end of a drag is none.
+    let from = 0;
+    this.plot.over.addEventListener("mousedown", (event) => { from = event.offsetX; });
+    this.plot.over.addEventListener("click", (event) => Math.abs(event.offsetX - from) < 8 && this.player.seek(this.plot.posToVal(event.offsetX, "x")));
     this.move();
   }
 
@@ -53,6 +57,9 @@ export class TimeChart {
     this.move();
   }
 }
+
+/** Ticks in words: powers of ten only where they are needed. */
+export const tickWords = (plot, ticks) => ticks.map((v) => (v === 0 ? "0" : Math.abs(v) >= 1e4 || Math.abs(v) < 1e-2 ? v.toExponential(digitsBeside(v, ticks)) : String(Number(v.toPrecision(4)))));
 
 /** Digits behind the point by which a tick is told from its neighbours. */
 function digitsBeside(value, ticks) {

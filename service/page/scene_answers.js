@@ -8,7 +8,7 @@ const MOST_PERIODS = 12;
 /** A fast motion over a longer time would be a blur. */
 
 /** Whether a refusal is about places that other places would mend. */
-const misfits = (refusal) => refusal.errors.some(({ remedy, detail }) => /assemble/.test(remedy ?? "") || /hold together|satisfy/.test(detail));
+const misfits = (refusal) => refusal.errors.some(({ remedy, detail }) => /assemble/.test(remedy ?? "") || /hold together|satisfy|misse[sd]|are apart at the start|overlap/.test(detail));
 
 /** What may move, from what is to stay to everything; `null` asks as the scene is written. */
 function attemptsFor(value, how, held) {

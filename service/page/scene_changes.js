@@ -115,6 +115,15 @@ export function movedBy(scene, { names = [], points = [], offset }, n) {
   return scene.withSources(pointers.map((pointer) => [pointer, inline(moved(scene.at(pointer) ?? [0, 0], offset, n))]));
 }
 
+/** With a body turned to an angle (degrees): about its centre, or about the point of the ground to which it is pinned. */
+export function turnedTo(scene, name, degrees, model) {
+  const body = model.byName[name], pointer = pointerTo("bodies", name), turned = scene.with(`${pointer}/angle`, { degrees });
+  const pins = (scene.value.connections || []).filter((c) => c.kind === "pin" && typeof c.b !== "string" && bodyOf(c.a, scene.value.bodies) === name);
+  if (pins.length !== 1 || pins[0].a === name) return turned;
+  const { point } = model.place(pins[0].b), by = (degrees * Math.PI) / 180 - body.angle, [x, y] = [body.at[0] - point[0], body.at[1] - point[1]];
+  return turned.with(`${pointer}/at`, [point[0] + x * Math.cos(by) - y * Math.sin(by), point[1] + x * Math.sin(by) + y * Math.cos(by)].map((v) => Number(v.toPrecision(15))));
+}
+
 /** With another face of the ground in place of `id`, for everything that touches it. */
 export function withFace(scene, id, on) {
   const face = facesOf(scene.value).find((f) => f.id === id);

@@ -1,10 +1,11 @@
 // Scenes in motion: built by hand, changed by handles, sliders or as JSON.
-import { Refusal, Worker, get } from "./api.js";
+import { Refusal, Worker, ask, get } from "./api.js";
 import { showEvents, showModel } from "./answer_words.js";
 import { Board } from "./board.js";
 import { CurveChoice } from "./curve_choice.js";
 import { $, make, written } from "./dom.js";
 import { facesAt, faultInWords, partOf } from "./impossible.js";
+import { Gallery } from "./gallery.js";
 import { headline, sayEvent } from "./headline.js";
 import { Inspector } from "./inspector.js";
 import { placeOf } from "./json_places.js";
@@ -25,19 +26,16 @@ import { SceneModel } from "./scene_model.js";
 import { exampleText } from "./scene_questions.js";
 import { markFaults, sliders } from "./scene_sliders.js";
 import { SpaceView } from "./space_view.js";
+import { takeAway } from "./take_away.js";
 import { readState, writeState } from "./url_state.js";
 
 const sentence = (text) => text.replace(/^./, (c) => c.toUpperCase());
-const titled = (name) => sentence(name.replaceAll("-", " "));
+const titled = (name) => catalogue.get(name).title;
+const METHOD_STEPS = 1000;
+/** Steps of a method beside the exact motion: few enough that its error is seen. */
+
 const OWN = "own";
 /** What the list calls a scene that is nobody's but the reader's. */
-
-/** Under which heading a scene of the catalogue is listed. */
-function kindOf({ name, example }) {
-  if (isNamed(name)) return "With endpoints of their own";
-  if (Object.values(example.bodies)[0].at?.length === 3) return "In space";
-  return example.connections?.some((c) => c.kind === "contact") ? "In the plane, with contacts" : "In the plane";
-}
 
 const state = { scene: "double-pendulum", changed: false, window: null };
 let catalogue = new Map(), model = null, answer = null, view = null, space = null, timer = null;
@@ -46,13 +44,14 @@ const doc = new SceneDocument(changed);
 const plane = new PlaneView($("plane-view"));
 const player = new Player($("player"));
 const chart = new TimeChart($("chart"), player, "Curves", 190);
-const curves = new CurveChoice(chart);
+const curves = new CurveChoice(chart, player);
 const worker = new Worker($("progress"));
 const live = new Live(refresh, () => worker.stop());
 const showRequests = requestPanel($("request"));
 
 const say = (words) => { $("said").textContent = words; };
-const ready = () => doc.sound && !isNamed(state.scene);
+const embedded = new URLSearchParams(location.search).get("embed") === "1";
+const ready = () => doc.sound && !isNamed(state.scene) && !embedded;
 const atStart = () => !player.playing && player.time === 0;
 const board = new Board({ doc, view: plane, say, ready, atStart, start: toStart, selected: showSelection, dropped, rename: renameInPlace });
 const inspector = new Inspector($("inspector"), { doc, board, edit, rename });
@@ -75,6 +74,13 @@ function look() {
   player.show();
 }
 
+const gallery = new Gallery((name) => choose(name));
+takeAway({
+  player, say, name: () => (state.scene === OWN ? "scene" : state.scene), title: () => titleNow(), text: () => doc.text, trajectory: () => answer?.shown ?? null,
+  canvas: () => $(model?.space ? "space-canvas" : "plane-canvas"), svg: () => (model?.space ? null : plane.svg(titleNow())), render: () => (model?.space ? space.draw() : plane.draw()),
+});
+document.body.classList.toggle("embed", embedded);
+$("browse").onclick = () => gallery.open();
 $("scene").onchange = () => choose($("scene").value);
 $("new").onclick = () => { choose(OWN); say("A new scene. Drag parts from the palette into the picture."); };
 $("open-file").onclick = () => $("file").click();
@@ -162,7 +168,13 @@ function renameInPlace(id, event) {
   if (id.startsWith("face:")) return;
   input.style.left = `${event.clientX - box.left}px`;
   input.style.top = `${event.clientY - box.top}px`;
-  const done = (take) => { if (take && input.isConnected) { const problem = rename(id, input.value.trim()); if (problem) say(problem); } input.remove(); };
+  const done = (take) => {
+    // Taking the field away takes the cursor from it, which would come here again.
+    input.onblur = null;
+    const problem = take ? rename(id, input.value.trim()) : null;
+    if (problem) say(problem);
+    input.remove();
+  };
   input.onkeydown = (e) => { if (e.key === "Enter" || e.key === "Escape") done(e.key === "Enter"); e.stopPropagation(); };
   input.onblur = () => done(true);
   $("plane-view").append(input);
@@ -239,7 +251,8 @@ function showNothing() {
   answer = null;
   model = new SceneModel(doc.scene.value, null);
   showView("open");
-  for (const name of ["player", "curves-line", "chart"]) $(name).hidden = true;
+  $("player").hidden = $("curves-line").hidden = true;
+  curves.offer(null);
   $("summary").textContent = "Nothing here yet: drag a part from the palette into the picture.";
   for (const name of ["answer", "warnings", "events"]) $(name).replaceChildren();
   $("plane-canvas").setAttribute("aria-label", $("summary").textContent);
@@ -249,15 +262,17 @@ function show({ answer: next, text }, how, path) {
   answer = next;
   const value = JSON.parse(text);
   const { description, trajectory } = isNamed(state.scene) ? drawn(state.scene, value, answer) : { description: value, trajectory: answer.trajectory };
+  answer.shown = trajectory;
   model = new SceneModel(description, trajectory);
   const time = trajectory?.time || [0], events = (answer.events || []).map((e) => ({ ...e, label: sayEvent(e) }));
   const stop = Math.max(time.at(-1), ...events.map((e) => e.time || 0)), still = !(stop > 0);
-  for (const name of ["player", "curves-line", "chart"]) $(name).hidden = still;
+  $("player").hidden = $("curves-line").hidden = still;
   showView(how);
   player.setSpan(stop || 1, Math.max(4, Math.min(15, 3 * stop)), events);
   $("window").placeholder = still ? "" : written(stop, 4);
   tell(events);
-  curves.offer(trajectory);
+  curves.offer(still ? null : trajectory);
+  if (how !== "drag") compareByMethod();
   showRequests({ "the motion": [path, value] });
 }
 
@@ -321,9 +336,30 @@ function restore() {
   }
 }
 
+$("beside").onchange = () => {
+  if ($("beside").value === "held" && answer?.shown) curves.compare({ trajectory: answer.shown, words: "before" });
+  else if ($("beside").value === "") curves.compare(null);
+  else compareByMethod();
+};
+
+/** Ask for the same motion by the method that is chosen, in steps that one sees. */
+async function compareByMethod() {
+  const kind = $("beside").value;
+  if (kind === "" || kind === "held" || !answer?.shown || isNamed(state.scene)) return;
+  const method = { kind, step: Number((player.stop / METHOD_STEPS).toPrecision(2)) };
+  try {
+    const { answer: other } = await ask("/v1/scenes", doc.scene.with("/times", { start: 0, stop: player.stop, count: 801 }).with("/outputs", ["trajectory"]).with("/method", method).text);
+    curves.compare({ trajectory: other.trajectory, words: `${$("beside").selectedOptions[0].textContent} in steps of ${written(method.step, 2)} s` });
+  } catch (error) {
+    curves.compare(null);
+    say(`${$("beside").selectedOptions[0].textContent}: ${error.errors?.[0]?.detail ?? error.message}.`);
+  }
+}
+
 const { scenes } = await get("/v1/scenes");
 catalogue = new Map(scenes.map((scene) => [scene.name, scene]));
-const groups = [...Map.groupBy(scenes, kindOf)].map(([label, entries]) => make("optgroup", { label }, ...entries.map(({ name }) => make("option", { value: name, textContent: titled(name) }))));
+gallery.fill(scenes);
+const groups = [...Map.groupBy(scenes, ({ topic }) => topic)].map(([label, entries]) => make("optgroup", { label }, ...entries.map(({ name, title }) => make("option", { value: name, textContent: title }))));
 $("scene").replaceChildren(make("option", { value: OWN, textContent: "A scene of your own" }), ...groups);
 restore();
 await live.running;

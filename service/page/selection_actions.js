@@ -1,5 +1,5 @@
 // What can be done to the selection: by keys, by buttons, from the list of parts.
-import { duplicated, movedBy, groundOf, renamed, tidy, withoutParts } from "./scene_changes.js";
+import { duplicated, movedBy, groundOf, renamed, tidy, turnedTo, withoutParts } from "./scene_changes.js";
 import { bodyPart } from "./plane_drawing.js";
 import { partsOf } from "./scene_parts.js";
 import { pointerTo } from "./scene_text.js";
@@ -75,7 +75,7 @@ export function selectionActions({ doc, board, say, start, selected }) {
       start();
       board.held = which;
       const degrees = (name) => tidy((board.model.byName[name].angle * 180) / Math.PI + by);
-      doc.change("turned", { scene: which.reduce((s, name) => s.with(pointerTo("bodies", name, "angle"), { degrees: degrees(name) }), doc.scene), how: "build", run: `turn ${which.join()}` });
+      doc.change("turned", { scene: which.reduce((s, name) => turnedTo(s, name, degrees(name), board.model), doc.scene), how: "build", run: `turn ${which.join()}` });
       say(`${which[0]} turned to ${tidy((board.model.byName[which[0]].angle * 180) / Math.PI)} degrees.`);
     },
     /** Rename a part; returns what is wrong with the name, or nothing. */

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 from tests.browser.waiting import settle
@@ -77,7 +78,7 @@ class Builder:
 
     def set(self, label: str, value: str) -> None:
         """Write into a field of the inspector."""
-        field = self.page.locator("#inspector").get_by_label(label, exact=True)
+        field = self.page.locator("#inspector").get_by_label(re.compile(f"^{label}( |$)"))
         field.fill(value)
         field.press("Tab")
         settle(self.page)

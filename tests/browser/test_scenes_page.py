@@ -85,10 +85,10 @@ def test_a_scene_of_the_reader_is_not_called_by_the_name_of_another(opened):
     own = {"gravity": [0, -9.81], "bodies": {"stone": {"mass": 1, "at": [0, 0]}}, "times": [0, 1]}
     page.locator("#editor").fill(json.dumps(own))
     settle(page)
-    assert page.locator("#about").inner_text() == "Changed from “Spool”."
+    assert page.locator("#about").inner_text() == "Changed from “Spool pulled by a weight”."
     page.locator("#scene").select_option("yo-yo")
     settle(page)
-    assert page.locator("#about").inner_text() not in (summary, "Changed from “Spool”.")
+    assert page.locator("#about").inner_text() not in (summary, "Changed from “Spool pulled by a weight”.")
 
 
 def test_a_scene_that_ends_at_once_has_no_playhead(opened):
