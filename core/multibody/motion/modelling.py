@@ -6,9 +6,11 @@ import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from flint import arb
+
 from core.balls import precision
 from core.errors import InvalidParameter, NotApplicable
-from core.multibody.algebra.polynomials import BITS, ZERO, Ball, is_zero
+from core.multibody.algebra.polynomials import BITS, ZERO, Ball, entry, is_zero
 from core.multibody.assembly.assembled_scene import assembled
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.equations.dynamics import accelerations, parts, restricted, singular_row
@@ -16,6 +18,8 @@ from core.multibody.equations.expansion import expansion
 from core.multibody.equations.starting_signs import with_starting_signs
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.language.switches import switches_of
+from core.multibody.laws.series import values_at
 from core.multibody.motion.euler_poisson import EulerPoisson
 from core.multibody.motion.free_body import freely_turning
 from core.multibody.motion.generic_equation import SceneSystem, scene_system
@@ -36,6 +40,8 @@ from core.multibody.reduction.turned_axes import line_axes, plane_axes, spans_pl
 from core.multibody.table.description import Described, described
 from core.multibody.table.table import Table
 
+_ANY_TIME = 1e300
+"""Time (s) before which, and after minus which, everything happens."""
 _LATER = 4
 """Order of the derivatives that show a plane: of a pendulum at rest beside its support the third one is zero."""
 
@@ -145,12 +151,48 @@ def _switched(found: Described) -> Described:
 
 def _start_of(found: Described, small: Reduced) -> tuple[list[Piece], list[Ball], list[Ball]]:
     """Return the parts of a reduced table, its accelerations at the start, and those of the coordinates described."""
-    pieces = [_piece(found, small.table, indices) for indices in parts(small.table)]
+    whole = [_piece(found, small.table, indices) for indices in parts(small.table)]
+    pieces = [piece for one in whole for piece in _apart_from_clock(one)]
     accelerations: list[Ball] = [ZERO] * len(small.table.names)
     for piece in pieces:
         for i, x in zip(piece.indices, piece.acceleration, strict=True):
             accelerations[i] = x
     return pieces, accelerations, small.directions(accelerations)
+
+
+def _apart_from_clock(piece: Piece) -> list[Piece]:
+    """Return what rests at all times, apart from the clock that its formulas read; or the part as it is.
+
+    What rests goes on to do so if the forces that read the clock have the same values whenever nothing moves.
+    """
+    table = piece.table
+    clocks = [k for k, unit in enumerate(table.units) if unit == "s"]
+    others = [k for k in range(len(table.names)) if k not in clocks]
+    moves = [x for k in others for x in (table.v[k], piece.acceleration[k]) if not is_zero(x)]
+    seen = [row.coordinates() for row in table.rows]
+    if moves or not clocks or not others or any(x.intersection(clocks) and x.intersection(others) for x in seen):
+        return [piece]
+    laws = [law for law in table.acting if law.coordinates().intersection(clocks)]
+    if any(next(switches_of(law.root), None) is not None for law in laws):
+        # Of several pieces a ball of all times would choose one.
+        return [piece]
+    at_any_time = [arb(0, _ANY_TIME) if k in clocks else x for k, x in enumerate(table.q)]
+    try:
+        now, then = (values_at(laws, q, table.v) for q in (table.q, at_any_time))
+    except InvalidParameter:
+        return [piece]
+    if any(x.rad() > 4 * y.rad() for x, y in zip(then, now, strict=True)):
+        return [piece]
+    found = []
+    for own in (others, clocks):
+        part = restricted(table, own)
+        for law, value in zip(laws, now, strict=True):
+            for i, x in law.push.items():
+                if i in own:
+                    part.load[own.index(i)] = entry(part.load, own.index(i)) + x * value
+        gain, chosen = accelerations(part)
+        found.append(Piece([piece.indices[k] for k in own], part, gain, chosen))
+    return found
 
 
 def _upright(found: Described) -> Reduced:

@@ -114,7 +114,12 @@ class Tracks:
             for unit, x in zip(self.units, vector, strict=True):
                 largest[unit] = max(largest.get(unit, 0.0), 0.0 if is_zero(x) else abs(float(x.mid())))
             found.append([largest[unit] for unit in self.units])
-        return found[0], found[1]
+        places, rates = found
+        # A body that hardly turns, beside others or itself that move, is known to turn no better than these are.
+        place, rate = (largest.get("m", 0.0) for largest in self._largest)
+        least = rate / place if place > 0.0 else 0.0
+        turns = [unit in ("1", "rad") and x > 0.0 for unit, x in zip(self.units, rates, strict=True)]
+        return places, [max(x, least) if turned else x for turned, x in zip(turns, rates, strict=True)]
 
     def fastest(self, unit: str) -> float:
         """Return the largest rate so far of a unit."""

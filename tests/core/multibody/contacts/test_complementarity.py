@@ -366,3 +366,36 @@ def test_a_table_that_a_spring_draws_back_slides_back_at_once(speed: Any, along:
     place = np.asarray(column(answer, "t.position").values)
     assert np.allclose(place[:, :2], np.outer(expected, along), rtol=0, atol=1e-15)
     assert np.all(place[:, 2] == 0.5)
+
+
+@pytest.mark.parametrize("x", ["0", "1e6"])
+def test_a_level_bar_that_lands_on_a_rough_floor_comes_to_rest_on_both_ends(x: str) -> None:
+    """What is left of its turning is rounding, which has no sign: both ends slide alike, and stick together."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "bar": {
+                "mass": 1,
+                "inertia": "1/3",
+                "at": [x, "0.4"],
+                "velocity": ["0.5", 0],
+                "places": {"l": [-1, "-0.2"], "r": [1, "-0.2"]},
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": f"on-{end}", "place": f"bar.{end}", "on": {"at": [x, 0]}, "friction": "0.2"}
+            for end in "lr"
+        ],
+    }
+    answer = solve_scene(read(scene), [0.3], ("trajectory",))
+    assert answer.problem is None
+    fall = math.sqrt(0.4 / 9.81)
+    slides = 0.5 - 0.2 * 9.81 * fall
+    stops = fall + slides / (0.2 * 9.81)
+    assert [event.kind for event in answer.events] == ["touch", "touch", "stick", "stick"]
+    for event, time in zip(answer.events, [fall, fall, stops, stops], strict=True):
+        assert abs(event.time - time) <= event.error + 4e-16
+    place = column(answer, "bar.position")
+    expected = 0.5 * fall + slides**2 / (2 * 0.2 * 9.81)
+    assert np.asarray(place.values)[0] - [float(x), 0.2] == pytest.approx([expected, 0.0], abs=place.error + 1e-16)
+    assert column(answer, "bar.angular_velocity").values[0] == 0.0
