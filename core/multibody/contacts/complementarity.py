@@ -17,8 +17,9 @@ from itertools import product
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.contacts.conditions_of_states import Situation, conditions_of, lasts, moves_as, same_motion
 from core.multibody.contacts.contact_forces import Balance, balanced
-from core.multibody.contacts.contact_responses import gap_rate, require_few, responses, slip_rate
+from core.multibody.contacts.contact_responses import MOST_UNDECIDED, gap_rate, require_few, responses, slip_rate
 from core.multibody.contacts.contact_states import Problem, State, phase_table, sticks_more
+from core.multibody.contacts.frictionless import decided_without_friction, is_smooth
 from core.multibody.contacts.slip_directions import (
     AHEAD,
     Direction,
@@ -59,7 +60,8 @@ def decided(
     Raises
     ------
     BudgetExceeded
-        For more contacts that push one another than `core.multibody.contacts.contact_responses.MOST_UNDECIDED`.
+        For more contacts with friction that push one another than
+        `core.multibody.contacts.contact_responses.MOST_UNDECIDED`.
     """
     unilateral = along_slip(measures, touching, q, v)
     states = [State.OPEN] * len(unilateral)
@@ -69,8 +71,11 @@ def decided(
     found = responses(phase_table(base, (), (), q, v).table, unilateral, list(choices))
     at = Situation(base, unilateral, q, v, choices, found)
     for group in found.clusters():
-        require_few(unilateral, group, "undecided contacts at once")
-        chosen = _decided_group(at, group, states)
+        if len(group) > MOST_UNDECIDED and is_smooth(unilateral, group):
+            chosen: Balance | Problem = decided_without_friction(at, group, states)
+        else:
+            require_few(unilateral, group, "undecided contacts at once")
+            chosen = _decided_group(at, group, states)
         if isinstance(chosen, Problem):
             return chosen
         for i, state in zip(group, chosen.states, strict=True):

@@ -28,6 +28,7 @@ from core.multibody.contacts.contact_responses import (
     slip_rate,
 )
 from core.multibody.contacts.contact_states import Problem, phase_table
+from core.multibody.contacts.frictionless import is_smooth
 from core.multibody.contacts.impulses import LIMIT, RatesByLine, alike, likest, rates_after
 from core.multibody.contacts.laws_of_impact import impulses_together
 from core.multibody.contacts.slip_directions import along_slip
@@ -147,7 +148,9 @@ def impact(
     for group in found.clusters():
         if not approaching(unilateral, group, q, v):
             continue
-        require_few(unilateral, group, "contacts in one impact")
+        # One after another any number may act.
+        if simultaneous != "in order" and not is_smooth(unilateral, group):
+            require_few(unilateral, group, "contacts in one impact")
         outcome = _group(unilateral, group, q, v, found, simultaneous, settled=settled)
         if isinstance(outcome, Problem):
             return outcome

@@ -15,8 +15,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.multibody.algebra.polynomials import ZERO, is_zero
-from core.multibody.contacts.contact_responses import Forces, Responses
+from core.multibody.contacts.contact_responses import MOST_UNDECIDED, Forces, Responses
 from core.multibody.contacts.contact_states import Problem
+from core.multibody.contacts.frictionless import impulses_without_friction
 from core.multibody.contacts.impulses import RatesByLine, impulses_at_once, rates_after
 from core.multibody.contacts.slip_through_impact import impulse_alone
 from core.multibody.table.connection_effects import Unilateral
@@ -30,7 +31,8 @@ def impulses_together(
     inelastic = all(is_zero(unilateral[i].restitution) for i in group)
     smooth = not any(found.grip(i) for i in group)
     if laws == {"newton"} or (inelastic and smooth):
-        return impulses_at_once(unilateral, group, rates, found)
+        at_once = impulses_without_friction if smooth and len(group) > MOST_UNDECIDED else impulses_at_once
+        return at_once(unilateral, group, rates, found)
     approaching = [i for i in group if rates[found.normal[i]] < 0]
     if len(approaching) == 1:
         i = approaching[0]
@@ -58,12 +60,13 @@ def _by_poisson(
 ) -> Forces | Problem:
     """Return the impulses of contacts without friction: of compression, of expansion, and of what that presses on."""
     plastic = [replace(one, restitution=ZERO) for one in unilateral]
-    compression = impulses_at_once(plastic, group, rates, found)
+    at_once = impulses_without_friction if len(group) > MOST_UNDECIDED else impulses_at_once
+    compression = at_once(plastic, group, rates, found)
     if isinstance(compression, Problem):
         return compression
     total = {b: (1 + unilateral[i].restitution) * compression.get(b, ZERO) for i in group for b in [found.normal[i]]}
     after = {a: ZERO if is_zero(x) else x for a, x in rates_after(total, rates, found).items()}
-    held = impulses_at_once(plastic, group, after, found)
+    held = at_once(plastic, group, after, found)
     if isinstance(held, Problem):
         return held
     return {b: x + held.get(b, ZERO) for b, x in total.items()}

@@ -87,7 +87,11 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
     Undecided
         If it is not known whether a gap closes before that.
     """
-    watched = [*watches(phase.unilateral, phase.states, phase.tables[0]), *lengths(base.measures.limits)]
+    in_closed_form = phase.uniform and len(phase.tracks) == 1
+    watched = [
+        *watches(phase.unilateral, phase.states, phase.tables[0], of_forces=not in_closed_form),
+        *lengths(base.measures.limits),
+    ]
     found = _crossings(base, phase, watched, left, noticed)
     gone = next((watch.one.name for watch in watched if watch.what == "length" and _is_gone(watch, found)), None)
     if gone is not None:
@@ -121,8 +125,7 @@ def _crossings(
 def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]) -> list[Crossing]:
     """Return the end of a phase whose state is exact and whose accelerations are constant."""
     motion = phase.exact_motions[0]
-    # No force changes.
-    found = [(w, *first_negative(w.series(motion), left)) for w in watched if w.what not in ("push", "grip")]
+    found = [(w, *first_negative(w.series(motion), left)) for w in watched]
     ends = [(root, watch) for watch, root, _ in found if root is not None]
     first = min(ends, key=lambda one: one[0].mid(), default=None)
     noticed.extend(

@@ -69,11 +69,13 @@ class Watch:
         return square
 
 
-def watches(unilateral: Sequence[Unilateral], states: Sequence[State], phase: PhaseTable) -> list[Watch]:
-    """Return what ends a phase."""
+def watches(
+    unilateral: Sequence[Unilateral], states: Sequence[State], phase: PhaseTable, *, of_forces: bool = True
+) -> list[Watch]:
+    """Return what ends a phase; of forces that are constant nothing is watched."""
     closed = [i for i in range(len(unilateral)) if phase.normal[i] is not None]
     found = [Watch(i, "gap", one) for i, one in enumerate(unilateral) if i not in closed]
-    for force in admissible(unilateral, closed, states, phase):
+    for force in admissible(unilateral, closed, states, phase) if of_forces else ():
         what: Literal["push", "grip"] = "grip" if force.grips else "push"
         found.append(Watch(force.number, what, unilateral[force.number], admissible=force))
     found.extend(Watch(i, "slip", unilateral[i], states[i].sense) for i in closed if states[i].sense)
