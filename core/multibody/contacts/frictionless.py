@@ -167,7 +167,7 @@ def impulses_without_friction(
         solved = _near(elimination, taking, free, pushes)
     impulses: Forces = {lines[k]: ZERO if is_zero(x) else x for k, x in solved.items()}
     for k, a in enumerate(lines):
-        push = impulses.get(a, ZERO)
+        push: Ball = impulses.get(a, ZERO)
         after: Ball = start[k] + sum((found.matrix[a][b] * p for b, p in impulses.items()), ZERO)
         closed = is_zero(after) and bool(push > 0)
         opens = is_zero(push) and (is_zero(after) or bool(after > 0))

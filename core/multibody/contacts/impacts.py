@@ -133,8 +133,8 @@ def impact(
     Raises
     ------
     BudgetExceeded
-        For more than eight touching contacts that push one another, and for more than four of which every order would
-        have to be tried.
+        For more than eight touching contacts that push one another by friction, unless they act in order; and for more
+        than four of which every order would have to be tried.
     """
     table = phase_table(base, (), (), q, v).table
     unilateral = along_slip(measures, touching, q, v)
