@@ -24,6 +24,7 @@ Code = Literal[
     "no-progress",
     "event-limit",
     "lost-event",
+    "formula",
 ]
 
 DOCUMENT = "docs/physics/undecided.md"
@@ -138,6 +139,12 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
             "An event cannot be located",
             "The error of the motion has grown as large as the motion; the answer holds up to the last event.",
             of_mechanics=False,
+        ),
+        UndecidedKind(
+            "formula",
+            "A formula does not say how the motion goes on",
+            "A formula has no value beyond the state that is answered last, or either side of the zero on which its "
+            "pieces depend leads back to it.",
         ),
     )
 }

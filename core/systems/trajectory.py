@@ -153,7 +153,8 @@ class MotionEvent:
     ----------
     kind : str
         Of a described scene "touch", "lift-off", "slip", "stick", "roll", "settle" (bounces end), "taut", "slack",
-        "stop", "release", "end-of-chain", "singular", or the code of a problem; of a named scene as it declares.
+        "stop", "release", "end-of-chain", "singular", "switch" (a formula changes its piece), or the code of a problem;
+        of a named scene as it declares.
     name : str
         Of the connection to which it happens; "" where several make a place singular, and where the kind says it.
     time : float

@@ -17,7 +17,9 @@ import numpy as np
 
 from core.arrays import Floats, Integers
 from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.equations.expansion import expansion
 from core.multibody.laws.kernel import PackedLaws
+from core.multibody.laws.law import Law
 from core.multibody.laws.samples import values_of
 from core.multibody.laws.tape import Tape
 from core.multibody.table.table import Table
@@ -164,6 +166,7 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         times.append(-turn)
     if spin is not None:
         times.append(-(spin // 2))
+    times.extend(_times_of_formulas(table))
     # What starts at the origin, or as near to it as rounding leaves an event, is measured by how far it comes until it
     # turns back, or something else has turned.
     ways = []
@@ -216,6 +219,32 @@ def _pushes(table: Table) -> list[tuple[int, int]]:
         if 0.0 < size < math.inf:
             found += [(i, math.frexp(size)[1] + e) for i, x in law.push.items() if (e := exponent(x)) is not None]
     return found
+
+
+HIGHEST_POWER = 5
+"""Of time by which a formula tells how fast it changes: a square of what passes through zero moves it by the fourth."""
+
+
+def _times_of_formulas(table: Table) -> list[int]:
+    """Return in what times formulas change the motion, as exponents: where they vanish their values do not tell.
+
+    Over the time that a power of the series takes to come up to a place, or what a rate makes of it.
+    """
+    if not table.acting:
+        return []
+    places, found = expansion(table, HIGHEST_POWER).places, []
+    for units in (("m",), ("1", "rad")):
+        own = [place for place, unit in zip(places, table.units, strict=True) if unit in units]
+        sizes = [_most([exponent(place[k]) for place in own]) for k in range(HIGHEST_POWER + 1)]
+        for k, size in enumerate(sizes):
+            ways = (
+                []
+                if size is None or k < 2
+                else [(x - size) // (k - j) for j, x in enumerate(sizes[:2]) if x is not None]
+            )
+            if ways:
+                found.append(max(ways))
+    return [min(found)] if found else []
 
 
 def _most(exponents: Sequence[int | None]) -> int | None:
@@ -295,6 +324,20 @@ def _packed_laws(table: Table, units: Units) -> PackedLaws:
         _numbers([x for x, _, _ in push]),
         _indices([(i, output) for _, i, output in push], 2),
         int(not tape.is_polynomial_in({i for i, unit in enumerate(table.units) if unit == "s"})),
+    )
+
+
+def packed_values(laws: Sequence[Law]) -> PackedLaws:
+    """Return laws in SI units, each of which pushes a coordinate of its number by its value."""
+    tape = Tape.of(laws)
+    return PackedLaws(
+        _indices(tape.operations, 5),
+        _numbers([pair(x, 0) for x in tape.numbers]),
+        _numbers([pair(x, 0) for _, x, _ in tape.terms]),
+        np.array([i for i, _, _ in tape.terms], dtype=np.int64),
+        _numbers([(1.0, 0.0)] * len(laws)),
+        _indices(list(enumerate(tape.outputs)), 2),
+        1,
     )
 
 

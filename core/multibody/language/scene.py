@@ -13,10 +13,12 @@ from types import MappingProxyType
 from typing import Literal, get_args
 
 from core.errors import InvalidParameter, Path
+from core.formulas import names_in
 from core.multibody.language.body import SceneBody
 from core.multibody.language.connection import Connection
 from core.multibody.language.contacts import ImpactLaw, Simultaneous
 from core.multibody.language.numerals import LONGEST_NAME, NAME, member
+from core.multibody.language.switches import SWITCHING
 from core.multibody.language.written import GROUND, Number, Vector
 from core.near_names import did_you_mean
 
@@ -96,6 +98,12 @@ class Scene:
     def one_sided(self) -> bool:
         """Whether it has anything that pushes and does not pull, or a string of which a jerk is foreseen."""
         return any(connection.one_sided for connection in self.connections)
+
+    @property
+    def switches(self) -> bool:
+        """Whether a formula may have several pieces."""
+        texts = [*self.let.values(), *(text for one in self.connections for text in one.formulas())]
+        return any(set(SWITCHING) & names_in(text) for text in texts if isinstance(text, str))
 
     @property
     def continues(self) -> bool:

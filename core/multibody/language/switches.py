@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 
 from core.formulas import Node
 
 SWITCHING = ("abs", "sign", "min", "max", "if")
 """Functions that change their piece where their first argument is zero, or where two arguments are equal."""
-
-STARTS = {"+": 1, "-": -1}
-"""Signs with which the argument of a function grows from zero at the start, as the text of its node says."""
 
 
 def argument_of(node: Node) -> Node:
@@ -25,9 +21,3 @@ def switches_of(node: Node) -> Iterator[Node]:
         yield node
     for inner in node.inner:
         yield from switches_of(inner)
-
-
-def with_starts(node: Node, start: Callable[[Node], str]) -> Node:
-    """Return a formula whose functions of several pieces have the signs of their arguments at the start."""
-    inner = tuple(with_starts(one, start) for one in node.inner)
-    return replace(node, inner=inner, text=start(node) if node.kind in SWITCHING else node.text)

@@ -1,4 +1,4 @@
-"""Where a step of a series ends before a corner of a formula: a zero of a length or root, or of what a sign sees."""
+"""Where a step of a series ends at a corner of a formula: a zero of a length or root."""
 
 from __future__ import annotations
 
@@ -18,19 +18,10 @@ from core.multibody.algebra.bernstein import (
     decided,
     zero_between,
 )
-from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, POWER, ROOT, SIGN, PackedLaws, leading_power
+from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, POWER, ROOT, PackedLaws, leading_power
 
 KNOWN = 2.0**-50
 """Share of its largest term to which a series is known in doubles."""
-
-SHORT_OF, NEARBY = 2.0**-46, 2.0**-42
-"""Share by which a step ends before the change of a sign, and share of a step from which on a change is that near."""
-
-TRUNCATED = 2.0**-56
-"""Share of its largest term that the last term of an argument may be: a change of its sign is then seen in time."""
-
-TOGETHER = 2.0**-48
-"""Share of a step within which corners are one: what they are apart by rounding."""
 
 
 @kernel()
@@ -145,60 +136,22 @@ def _first_return(values: Floats, operation: Integers, h: float, leading: int) -
 
 
 @kernel()
-def _resolved(values: Floats, part: int, h: float) -> float:
-    """Return the part of a step over which the last coefficients of a series are small beside its largest term."""
-    last = values.shape[1] - 3
-    for _ in range(3):
-        largest, power = 0.0, 1.0
-        for k in range(last + 1):
-            largest = max(largest, abs(values[part, k, 0]) * power)
-            power *= abs(h)
-        for k in (last, last - 1):
-            term = abs(values[part, k, 0]) * abs(h) ** k
-            if term > TRUNCATED * largest:
-                h *= (TRUNCATED * largest / term) ** (1.0 / k)
-    return h
+def until_corner(laws: PackedLaws, values: Floats, h: float) -> float:
+    """Return the part of a step up to the first corner of a formula, a zero of a length or root; else the step.
 
-
-@kernel()
-def until_corner(laws: PackedLaws, values: Floats, h: float, course: Floats, since: float) -> float:
-    """Return the part of a step up to the first corner of a formula; else the step.
-
-    A length or root has a corner where it is zero, and so has what depends on a sign. It is not a number where a
-    product begins beyond the order of the series, which then says nothing of it, or where a sign changes back at once.
-
-    Of a sign that changes at the end of that part there is a mark in `course`: the sign that follows.
-
-    Parameters
-    ----------
-    since : float
-        Time of the start of the step, which is known to its last digits in pairs alone.
+    It is not a number where a product begins beyond the order of the series, which then says nothing of it.
     """
-    for o in range(laws.operations.shape[0]):
-        if laws.operations[o, 0] == SIGN:
-            h = _resolved(values, laws.operations[o, 1], h)
     best = h
     for o in range(laws.operations.shape[0]):
-        operation, mark = laws.operations[o], course[1 + o]
+        operation = laws.operations[o]
         code = operation[0]
         if code == MULTIPLY and _begins_later(values, o, operation[1], operation[2]):
             return math.nan
-        course[1 + o] = 0.0
-        if code == SIGN:
-            sign = values[o, 0, 0]
-            if sign == 0.0:
-                continue
-            if mark != 0.0 and _turns_back(values, operation[1], sign, course[0]):
-                return math.nan
-            found, next_mark = _first_change(values, operation[1], sign, h), -sign
-            if abs(found) > NEARBY * max(abs(h), abs(since)):
-                # The rest of the way is short, and its end known to as many digits of it.
-                found, next_mark = found * (1.0 - SHORT_OF), 0.0
-        elif code in (ROOT, POWER):
+        if code in (ROOT, POWER):
             # Beyond a double zero of its argument the series is that of the other branch, which is negative.
-            found, next_mark = _first_change(values, o, 1.0, h), 0.0
+            found = _first_change(values, o, 1.0, h)
         elif code == LENGTH:
-            part, next_mark = _along_a_line(values, operation), 0.0
+            part = _along_a_line(values, operation)
             leading = leading_power(values, operation, values.shape[1] - 3)
             if part < 0:
                 found = _first_return(values, operation, h, leading)
@@ -206,19 +159,6 @@ def until_corner(laws: PackedLaws, values: Floats, h: float, course: Floats, sin
                 found = _first_change(values, part, values[o, leading, 0] * values[part, leading, 0], h)
         else:
             continue
-        if abs(found) > abs(h) or abs(found) > abs(best) + TOGETHER * abs(h):
-            continue
-        if abs(found) < abs(best) - TOGETHER * abs(h):
-            course[1 : 1 + o] = 0.0
-        course[1 + o] = next_mark
-        best = found if abs(found) < abs(best) else best
+        if abs(found) < abs(best):
+            best = found
     return best
-
-
-@kernel()
-def _turns_back(values: Floats, part: int, sign: float, way: float) -> bool:
-    """Return whether what has just passed through zero goes back: its rate has the sign that it had before."""
-    for k in range(1, values.shape[1]):
-        if values[part, k, 0] != 0.0:
-            return bool(sign * values[part, k, 0] * (way if k % 2 == 1 else 1.0) < 0.0)
-    return False

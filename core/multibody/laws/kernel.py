@@ -29,7 +29,7 @@ NUMBER, PLACE, RATE, ADD, SUBTRACT, MULTIPLY, DIVIDE = map(
 )
 ROOT, EXP, SINE, COSINE, SINH, COSH = map(int, (Op.ROOT, Op.EXP, Op.SINE, Op.COSINE, Op.SINH, Op.COSH))
 LOG, ASIN, ATAN, ATAN2, POWER, LENGTH = map(int, (Op.LOG, Op.ASIN, Op.ATAN, Op.ATAN2, Op.POWER, Op.LENGTH))
-TANH, TANH_SLOPE, SIGN, CHOICE = map(int, (Op.TANH, Op.TANH_SLOPE, Op.SIGN, Op.CHOICE))
+TANH, TANH_SLOPE = int(Op.TANH), int(Op.TANH_SLOPE)
 
 LARGEST_TANGENT = 40.0
 """Argument from which on a hyperbolic tangent is one to pairs of doubles: it differs by 2 exp(-80)."""
@@ -193,37 +193,17 @@ def _input(laws: PackedLaws, path: Floats, size: int, operation: Integers, k: in
 
 
 @kernel()
-def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, course: Floats, values: Floats) -> None:
+def values_of_laws(laws: PackedLaws, path: Floats, size: int, k: int, way: float, values: Floats) -> None:
     """Fill in coefficient k of every operation, the earlier ones being known.
-
-    The sign of what is zero at first, and does not depend on rates, is that of its rate.
 
     Parameters
     ----------
     path : (planes, orders * size)
         Coefficients of the coordinates, each order at k size, known up to k + 1.
-    course : (1 + o,)
-        Sign of the times that follow; then the signs that follow of what is zero at the start of the series.
+    way : float
+        Sign of the times that follow.
     values : (o, orders, 2)
     """
-    _formed(laws, path, size, k, course, values)
-    if k > 0:
-        return
-    grows = False
-    for o in range(laws.operations.shape[0]):
-        grows = grows or (laws.operations[o, 0] == SIGN and laws.operations[o, 3] == 0 and values[o, 0, 0] == 0.0)
-    if grows:
-        _formed(laws, path, size, 1, course, values)
-        for o in range(laws.operations.shape[0]):
-            rate = values[laws.operations[o, 1], 1, 0]
-            if laws.operations[o, 0] == SIGN and laws.operations[o, 3] == 0 and values[o, 0, 0] == 0.0 and rate != 0.0:
-                course[1 + o] = math.copysign(1.0, rate * course[0])
-        _formed(laws, path, size, 0, course, values)
-
-
-@kernel()
-def _formed(laws: PackedLaws, path: Floats, size: int, k: int, course: Floats, values: Floats) -> None:
-    """Fill in coefficient k of every operation."""
     for o in range(laws.operations.shape[0]):
         operation = laws.operations[o]
         code, a, b, c, d = operation[0], operation[1], operation[2], operation[3], operation[4]
@@ -246,16 +226,8 @@ def _formed(laws: PackedLaws, path: Floats, size: int, k: int, course: Floats, v
         elif code == TANH_SLOPE:
             ph, pl = _convolved(values, o - 1, 0, o - 1, k, k + 1)
             sh, sl = dd_add(1.0 if k == 0 else 0.0, 0.0, -ph, -pl)
-        elif code == SIGN:
-            if k == 0:
-                sh = course[1 + o]
-                if sh == 0.0:
-                    sh = math.copysign(1.0, values[a, 0, 0]) if values[a, 0, 0] != 0.0 else float(b)
-        elif code == CHOICE:
-            chosen = b if values[a, 0, 0] > 0.0 else c
-            sh, sl = values[chosen, k, 0], values[chosen, k, 1]
         elif code == LENGTH:
-            sh, sl = _length(values, o, operation, k, course[0])
+            sh, sl = _length(values, o, operation, k, way)
         elif code == POWER:
             sh, sl = _power(values, laws, o, a, b, k)
         elif code in (SINE, SINH):

@@ -50,8 +50,8 @@ class Law:
     numbers : mapping of str to ball
     push : mapping of int to ball
         Force on each coordinate where the value is one.
-    in_damping : bool
-        Whether its forces are entries of D, so that only its value is of interest.
+    in_table : bool
+        Whether its forces are entries of b and D, so that only its value is of interest.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Law:
     inputs: Mapping[str, Input]
     numbers: Mapping[str, Ball] = field(default_factory=dict)
     push: Mapping[int, Ball] = field(default_factory=dict)
-    in_damping: bool = False
+    in_table: bool = False
 
     def coordinates(self) -> set[int]:
         """Return the coordinates that it depends on or pushes."""

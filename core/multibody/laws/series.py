@@ -88,10 +88,6 @@ class LawSeries:
             case Op.TANH_SLOPE:
                 tangent = values[number - 1][: k + 1]
                 return (ONE if k == 0 else ZERO) - convolved(tangent, tangent)
-            case Op.SIGN:
-                return _sign(values[a][0], b) if k == 0 else ZERO
-            case Op.CHOICE:
-                return values[b if values[a][0] > 0 else c][k]
             case Op.LENGTH:
                 return _length(own, [values[i] for i in (a, b, c)], k)
         if k == 0:
@@ -124,11 +120,6 @@ def convolved(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
 def _integrated(argument: Series, derivative: Series, k: int) -> Ball:
     """Return coefficient k of what changes by a derivative times the change of an argument."""
     return sum((j * argument[j] * derivative[k - j] for j in range(1, k + 1)), ZERO) / k
-
-
-def _sign(value: Ball, start: int) -> Ball:
-    """Return the sign of a number, and the given one of zero."""
-    return value.sgn() if not is_zero(value) else start * ONE
 
 
 def _length(own: Series, vector: Sequence[Series], k: int) -> Ball:

@@ -19,11 +19,10 @@ from enum import IntEnum
 from flint import arb
 
 from core.errors import InvalidParameter
-from core.formulas import Node, names_of, value_of
+from core.formulas import Node, value_of
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
 from core.multibody.language.motion_formulas import LENGTH
 from core.multibody.language.numerals import BALLS
-from core.multibody.language.switches import STARTS, SWITCHING, argument_of
 from core.multibody.laws.law import Input, Law
 
 MOST_OPERATIONS = 2000
@@ -69,12 +68,6 @@ class Op(IntEnum):
     """Hyperbolic tangent of a; the next operation is its derivative."""
     TANH_SLOPE = 20
     """One less the square of the operation before."""
-    SIGN = 21
-    """Sign of a, constant up to the next zero of it.
-
-    b is the sign with which a grows from zero at the start, and c whether it depends on rates."""
-    CHOICE = 22
-    """b where the sign a is positive, else c."""
 
 
 Operation = tuple[int, int, int, int, int]
@@ -187,29 +180,13 @@ class _Writer:
             return self._power(node)
         if node.kind == "sqrt" and (vector := _squared(node.inner[0])):
             return self._function(LENGTH, [self.of(part) for part in vector])
-        values = [self.of(inner) for inner in node.inner]
-        return self._switch(node, values) if node.kind in SWITCHING else self._function(node.kind, values)
+        return self._function(node.kind, [self.of(inner) for inner in node.inner])
 
     def _varies(self, node: Node) -> bool:
         """Return whether a part of the formula has an input."""
         if node.kind == "name":
             return node.text in self.law.inputs
         return any(self._varies(inner) for inner in node.inner)
-
-    def _switch(self, node: Node, values: list[int]) -> int:
-        """Return a function of several pieces."""
-        tape, kind = self.tape, node.kind
-        first = tape.add(Op.SUBTRACT, *values) if kind in ("min", "max") else values[0]
-        rated = any(self.law.inputs[name].rate for name in names_of(argument_of(node)) if name in self.law.inputs)
-        sign = tape.add(Op.SIGN, first, STARTS.get(node.text, 0), int(rated))
-        match kind:
-            case "abs":
-                return tape.add(Op.MULTIPLY, sign, first)
-            case "sign":
-                return sign
-            case "if":
-                return tape.add(Op.CHOICE, sign, *values[1:])
-        return tape.add(Op.CHOICE, sign, *(values if kind == "max" else reversed(values)))
 
     def _function(self, kind: str, values: list[int]) -> int:
         tape, first = self.tape, values[0]

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from flint import arb
 
@@ -15,7 +14,6 @@ from core.multibody.assembly.assembled_scene import assembled
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.equations.dynamics import accelerations, parts, restricted, singular_row
 from core.multibody.equations.expansion import expansion
-from core.multibody.equations.starting_signs import with_starting_signs
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.language.switches import switches_of
@@ -38,6 +36,7 @@ from core.multibody.reduction.passes import further, reduced
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.reduction.turned_axes import line_axes, plane_axes, spans_plane, turned_to, vertical_axes
 from core.multibody.table.description import Described, described
+from core.multibody.table.law_pieces import switching
 from core.multibody.table.table import Table
 
 _ANY_TIME = 1e300
@@ -109,7 +108,7 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
     InvalidParameter
         For a scene that cannot be, with the path to the fault; `SlackAtStart` where a string is too long to be taut.
     NotApplicable
-        For a scene with contacts.
+        For a scene with contacts, or with formulas of several pieces.
     """
     found = described(scene, numerals)
     table = found.measures.table
@@ -119,6 +118,14 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
             path=("connections", found.paths[found.measures.unilateral[0].name][-1]),
             remedy="leave out the method, or hold what touches by a connection of another kind",
         )
+    law = next((law for law in table.laws if switching([law])), None)
+    if law is not None:
+        raise NotApplicable(
+            "a formula of several pieces changes the equations of motion at every zero of what these depend on: such "
+            "a scene is answered by its own phases alone",
+            path=law.path,
+            remedy="leave out the method or the chain, or write a formula of one piece",
+        )
     moved = list(dict.fromkeys([*found.measures.coordinates.rounded, *assemble_places(table, found.paths)]))
     fitted = assemble_rates(table, found.measures.coordinates.given, found.paths)
     return models_of(found, moved, fitted)
@@ -126,7 +133,6 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
 
 def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
     """Return the models of a table whose start meets its rows."""
-    found = _switched(found)
     small = _upright(found)
     pieces, accelerations, full = _start_of(found, small)
     turned = _turned(found, small, full)
@@ -137,16 +143,6 @@ def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled
     dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
     whole = Whole(found.measures, small, full, accelerations, motions, dropped)
     return Modelled(found, whole, pieces, moved, fitted)
-
-
-def _switched(found: Described) -> Described:
-    """Return a scene whose formulas of several pieces know on which of them it begins."""
-    table = with_starting_signs(found.measures.table)
-    if table is found.measures.table:
-        return found
-    measures = copy.copy(found.measures)
-    measures.table = table
-    return replace(found, measures=measures)
 
 
 def _start_of(found: Described, small: Reduced) -> tuple[list[Piece], list[Ball], list[Ball]]:

@@ -46,8 +46,8 @@ class Products(NamedTuple):
         Inverses of the natural numbers, in pairs.
     laws : (o, order + 1, 2)
         Coefficients of the operations of laws, in pairs.
-    course : (1 + o,)
-        Of laws: sign of the times that follow, and which lengths are zero at the start of the series.
+    way : (1,)
+        Sign of the times that follow.
     """
 
     at: Integers
@@ -61,7 +61,7 @@ class Products(NamedTuple):
     path: Floats
     inverses: Floats
     laws: Floats
-    course: Floats
+    way: Floats
 
 
 @kernel()
@@ -121,16 +121,8 @@ def products_of(table: Packed, order: int, planes: int) -> Products:
         np.zeros((planes, (order + 1) * size)),
         inverses,
         np.zeros((table.laws.operations.shape[0], order + 1, 2)),
-        _forwards(table.laws.operations.shape[0]),
+        np.ones(1),
     )
-
-
-@kernel()
-def _forwards(count: int) -> Floats:
-    """Return the course of laws whose times grow, and of which nothing is zero."""
-    found = np.zeros(1 + count)
-    found[0] = 1.0
-    return found
 
 
 @kernel(forceinline=True)

@@ -36,6 +36,11 @@ EARLY = 6
 """Highest power by which a motion that begins with it is measured though lower ones are there by rounding: what begins
 to slip under a force that grows begins with the third."""
 
+GAP = 10
+"""Powers of which one at least is of full size: the square of what passes through zero moves it by every third."""
+SMALLER = 2.0**10
+"""How much smaller a coefficient may be than others of a series tell: those of a sine are within this."""
+
 DONE, FULL, SINGULAR, LOST, STUCK = 0, 1, 2, 3, 4
 """How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles, or
 where a formula does not say how the motion goes on."""
@@ -68,7 +73,7 @@ def coefficients(table: Packed, space: Saddle, products: Products, since: int) -
         for p in range(table.damp.shape[0]):
             right[table.damp_at[p, 0]] -= table.damp[p, 0] * (k + 1) * path[(k + 1) * size + table.damp_at[p, 1]]
         if table.laws.push.shape[0] > 0:
-            values_of_laws(table.laws, products.path, size, k, products.course, products.laws)
+            values_of_laws(table.laws, products.path, size, k, products.way[0], products.laws)
         for p in range(table.laws.push.shape[0]):
             right[table.laws.push_at[p, 0]] += table.laws.push[p, 0] * products.laws[table.laws.push_at[p, 1], k, 0]
         summed(products, k)
@@ -115,7 +120,8 @@ def step_size(q: Floats, group: Integers, tolerance: float, lowest: int) -> floa
     """Return the step at which the last terms of the series are `tolerance` of what they are added to.
 
     Where the last two coefficients vanish, the highest one that does not tells the radius of convergence, down to the
-    power `lowest`: what is left out begins beyond the order all the same.
+    power `lowest`: what is left out begins beyond the order all the same. Where powers may be missing, the last two may
+    be there by rounding alone, and some before them bound the step, too.
     """
     order = q.shape[1] - 1
     best = np.inf
@@ -128,8 +134,10 @@ def step_size(q: Floats, group: Integers, tolerance: float, lowest: int) -> floa
         # The logarithms of sizes and scales; that of zero is minus infinity.
         nearest = 0.0 if g == 2 else math.log(_largest(q, group, g, 0))
         rate, gain = math.log(_largest(q, group, g, 1)), math.log(_largest(q, group, g, 2))
-        for power, number in ((top, last), (order - 1, before)):
-            if number > 0.0:
+        for back in range(max(GAP, 2) if lowest < order else 2):
+            power = top if back == 0 else order - back
+            number = last if back == 0 else before if back == 1 else _largest(q, group, g, power)
+            if number > 0.0 and power > 2:
                 size = math.log(number)
                 # What starts at zero is measured by how far it comes within the radius of convergence.
                 scale = max(nearest, gain + 2.0 * (gain - size) / (power - 2))
@@ -141,6 +149,9 @@ def step_size(q: Floats, group: Integers, tolerance: float, lowest: int) -> floa
                         break
                     moved = math.log(_largest(q, group, g, k))
                     step = max(step, (moved - size) / (power - k) + math.log(tolerance) / (beyond - k))
+                if back > 1:
+                    # Powers that follow are usually smaller than those before tell.
+                    step += math.log(SMALLER) / power
                 # What has no other coefficient moves by rounding alone, or is a polynomial.
                 if step > -np.inf:
                     best = min(best, step)
@@ -245,7 +256,7 @@ def advance(
     if not inverted(table, lines, space):
         return SINGULAR, 0
     way = 1.0 if end >= clock[0] else -1.0
-    products.course[0] = way
+    products.way[0] = way
     for step in range(series.shape[0]):
         starts[step, 0], starts[step, 1] = clock[0], clock[1]
         left = (end - clock[0]) - clock[1]
@@ -265,7 +276,7 @@ def advance(
         if abs(h) >= abs(left):
             h = left
         if table.laws.operations.shape[0] > 0:
-            h = until_corner(table.laws, products.laws, h, products.course, clock[0])
+            h = until_corner(table.laws, products.laws, h)
             if not abs(h) >= 0.0:
                 return STUCK, step
         for b in range(0, n, WIDTH):

@@ -72,7 +72,7 @@ def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: 
             ph, pl = dd_mul_d(path[0, j], path[1, j], k + 1.0)
             right[0, i], right[1, i] = gathered(right[0, i], right[1, i], -table.damp[p, 0], -table.damp[p, 1], ph, pl)
         if table.laws.push.shape[0] > 0:
-            values_of_laws(table.laws, path, size, k, products.course, products.laws)
+            values_of_laws(table.laws, path, size, k, products.way[0], products.laws)
         _pushed(table.laws, products.laws, k, right)
         summed_pairs(products, k)
         for p in range(at.shape[0]):
@@ -251,7 +251,7 @@ def advance_pairs(
     if found == FAILED:
         return SINGULAR, 0
     way = 1.0 if end >= clock[0] else -1.0
-    products.course[0] = way
+    products.way[0] = way
     for step in range(series.shape[0]):
         starts[step, 0], starts[step, 1] = clock[0], clock[1]
         left = (end - clock[0]) - clock[1]
@@ -276,7 +276,7 @@ def advance_pairs(
         if abs(h) >= abs(left):
             h = left
         if table.laws.operations.shape[0] > 0:
-            h = until_corner(table.laws, products.laws, h, products.course, clock[0])
+            h = until_corner(table.laws, products.laws, h)
             if not abs(h) >= 0.0:
                 return STUCK, step
         _moved(path, size, h, moved)
@@ -320,9 +320,7 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
     lines = np.empty((table.lines.shape[0], 2))
     space = saddle_space(table, 2)
     right, found = np.zeros((2, padded(n + m))), np.empty((2, padded(n + m)))
-    # Accelerations, which the second power would be, are not known yet: an argument that is zero grows with its rate.
-    path, laws = np.zeros((2, 3 * n)), np.zeros((table.laws.operations.shape[0], 2, 2))
-    course = np.zeros(1 + table.laws.operations.shape[0])
+    path, laws = np.empty((2, 2 * n)), np.zeros((table.laws.operations.shape[0], 1, 2))
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
         if inverted_pairs(table, lines, space) == FAILED:
@@ -357,9 +355,7 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
             for i in range(n):
                 path[0, i], path[1, i] = q[s, i, 0], q[s, i, 1]
                 path[0, n + i], path[1, n + i] = v[s, i, 0], v[s, i, 1]
-            course[:] = 0.0
-            course[0] = 1.0
-            values_of_laws(table.laws, path, n, 0, course, laws)
+            values_of_laws(table.laws, path, n, 0, 1.0, laws)
             _pushed(table.laws, laws, 0, right)
         for i in range(n + m):
             right[0, i], right[1, i] = settled(right[0, i], right[1, i])

@@ -10,7 +10,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from core.multibody.algebra.polynomials import ONE, Ball
+from flint import arb
+
+from core.multibody.algebra.polynomials import ONE, Ball, is_zero
+from core.multibody.equations.expansion import Expansion
+from core.multibody.equations.polynomial_roots import first_negative
+from core.multibody.equations.starting_pieces import series_of
+from core.multibody.laws.law import Law
+from core.multibody.phases.uniform_pieces import polynomial_of
+
+
+def _up_to(x: Ball) -> Ball:
+    """Return a ball that holds all that is between zero and a number."""
+    return x / 2 + arb(0, abs(x / 2).upper())
 
 
 @dataclass(frozen=True)
@@ -76,6 +88,29 @@ class Accumulation:
     def limit(self) -> tuple[list[Ball], list[Ball]]:
         """Return the state at the end."""
         return self.state(self.length, ONE - ONE)
+
+    def keeps_sign(self, law: Law, sign: int) -> bool:
+        """Return whether a formula certainly has a sign at all times before the end."""
+        state = Expansion([[x, y] for x, y in zip(*self._enclosure(), strict=True)], [])
+        if not is_zero(series_of(law, state, 1)[0]):
+            return True
+        if any(not is_zero(self.push[i]) for i in law.coordinates()):
+            return False
+        # What the impulses do not change is a polynomial in time: it may be zero at the end.
+        motion = Expansion([[q, v, a / 2] for q, v, a in zip(self.q, self.v, self.a, strict=True)], [])
+        series = polynomial_of(law, motion)
+        if series is None:
+            return False
+        root, _ = first_negative([sign * x for x in series], self.length)
+        return root is None or not root < self.length
+
+    def _enclosure(self) -> tuple[list[Ball], list[Ball]]:
+        """Return balls that hold the coordinates and rates of all times before the end."""
+        rates = [
+            v + _up_to(a * self.length) + _up_to(r * self.total)
+            for v, a, r in zip(self.v, self.a, self.push, strict=True)
+        ]
+        return [q + _up_to(self.length) * rate for q, rate in zip(self.q, rates, strict=True)], rates
 
     def state(self, time: Ball, power: Ball) -> tuple[list[Ball], list[Ball]]:
         """Return the state at a time, after as many impulses as the power of the restitution."""

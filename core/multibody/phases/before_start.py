@@ -18,7 +18,7 @@ from core.multibody.algebra.polynomials import BITS
 from core.multibody.contacts.contact_states import State, change_of
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_ends import expansions_of
-from core.multibody.phases.watches import Watch, lengths, watches
+from core.multibody.phases.watches import Watch, lengths, switches, watches
 from core.multibody.trajectory.events import End, first_event
 
 
@@ -51,7 +51,11 @@ def follow_backwards(motion: PhaseMotion, times: Floats) -> None:
     names = [name for number, name, _ in motion.impacts if number == 0]
     event = None
     if not names:
-        watched = [*watches(phase.unilateral, phase.states, phase.tables[0]), *lengths(motion.base.measures.limits)]
+        watched = [
+            *watches(phase.unilateral, phase.states, phase.tables[0]),
+            *switches(phase.arguments),
+            *lengths(motion.base.measures.limits),
+        ]
         with precision(BITS):
             ends = [_end(phase, watch) for watch in watched]
             event = first_event(phase.models[0].whole, ends, float(np.min(times)), partial(expansions_of, phase))
@@ -69,6 +73,8 @@ def follow_backwards(motion: PhaseMotion, times: Floats) -> None:
 def _end(phase: Phase, watch: Watch) -> End:
     if watch.what == "length":
         return End("singular", watch.one.name, watch.watched, watch.one.gap)
+    if watch.what == "switch":
+        return End("switch", watch.one.name, watch.watched)
     if watch.what == "gap":
         return End(watch.one.closes, watch.one.name, watch.watched)
     new = {"push": State.OPEN, "slip": State.STICK, "grip": State.FORWARD}[watch.what]

@@ -22,6 +22,7 @@ from core.multibody.phases.uniform_pieces import keeps_its_forces, uniform_motio
 from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Force, Unilateral
 from core.multibody.table.description import Described
+from core.multibody.table.law_pieces import Argument, switching
 from core.systems.trajectory import MotionEvent
 
 
@@ -47,6 +48,8 @@ class Phase:
         In place of the models, where infinitely many impacts are in the phase.
     settles : str
         The measure that comes to rest at the end, after impacts that are not listed; empty where there are none.
+    arguments : sequence of Argument
+        What is zero where formulas change their piece.
     """
 
     tracks: list[Track]
@@ -58,6 +61,7 @@ class Phase:
     end: Ball | None = None
     bounces: Accumulation | None = None
     settles: str = ""
+    arguments: Sequence[Argument] = ()
 
     @property
     def start(self) -> Ball:
@@ -180,8 +184,8 @@ class PhaseMotion:
 
     @property
     def smooth(self) -> bool:
-        """Whether nothing is unilateral: there is one phase, which a method may compute as well."""
-        return not self.unilateral
+        """Whether nothing is unilateral or in pieces: there is one phase, which a method may compute as well."""
+        return not self.unilateral and not switching(self.base.measures.table.laws)
 
 
 def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:

@@ -84,9 +84,9 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
 
 def _motion_of(scene: Scene, request: SceneRequest) -> PhaseMotion:
     """Return the motion of a scene: through events where something is unilateral, or a string is slack at times."""
-    if scene.one_sided:
-        return _in_phases(scene, request)
     passes = request.method is None and scene.continues
+    if scene.one_sided or (passes and scene.switches and "equilibria" not in request.outputs):
+        return _in_phases(scene, request)
     try:
         found = modelled(scene)
     except SlackAtStart:

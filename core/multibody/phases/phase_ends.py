@@ -13,6 +13,7 @@ from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import Ball, evaluated, is_zero, size
 from core.multibody.contacts.contact_states import State, phase_table
 from core.multibody.contacts.projection import project
+from core.multibody.equations.expansion import Series
 from core.multibody.equations.packed import two_to
 from core.multibody.equations.polynomial_roots import first_negative, sharpened
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
@@ -21,7 +22,7 @@ from core.multibody.phases.shared_friction import first_without_share
 from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.phases.uniform_pieces import ExpandedUniform
-from core.multibody.phases.watches import Crossing, Watch, lengths, watches
+from core.multibody.phases.watches import Crossing, Watch, lengths, switches, watches
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.followed import Found
@@ -90,6 +91,7 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
     in_closed_form = phase.uniform and len(phase.tracks) == 1
     watched = [
         *watches(phase.unilateral, phase.states, phase.tables[0], of_forces=not in_closed_form),
+        *switches(phase.arguments),
         *lengths(base.measures.limits),
     ]
     found = _crossings(base, phase, watched, left, noticed)
@@ -114,7 +116,10 @@ def _crossings(
     base: Described, phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]
 ) -> list[Crossing]:
     if phase.uniform and len(phase.tracks) == 1:
-        return _in_closed_form(phase, watched, left, noticed)
+        series = [(w, w.series(phase.exact_motions[0])) for w in watched]
+        polynomials = [(w, own) for w, own in series if own is not None]
+        if len(polynomials) == len(series):
+            return _in_closed_form(phase, polynomials, left, noticed)
     if phase.turning:
         return _while_turning(base, phase, watched, float(left))
     if phase.uniform:
@@ -122,10 +127,12 @@ def _crossings(
     return first_without_share(phase, watched, float(left), partial(_searched, phase))
 
 
-def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]) -> list[Crossing]:
+def _in_closed_form(
+    phase: Phase, watched: Sequence[tuple[Watch, Series]], left: Ball, noticed: list[str]
+) -> list[Crossing]:
     """Return the end of a phase whose state is exact and whose accelerations are constant."""
     motion = phase.exact_motions[0]
-    found = [(w, *first_negative(w.series(motion), left)) for w in watched]
+    found = [(w, *first_negative(own, left)) for w, own in watched]
     ends = [(root, watch) for watch, root, _ in found if root is not None]
     first = min(ends, key=lambda one: one[0].mid(), default=None)
     noticed.extend(
@@ -213,11 +220,19 @@ def _located(phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Fou
         return crossings if len(crossings) > 1 else crossings * 2
     # Bounces in turn grow shorter than pairs resolve: where accelerations are constant, balls know the state.
     crossings = []
-    for motion in phase.exact_motions:
-        time = sharpened(watch.series(motion), arb(found.time) + arb(found.rest))
+    for motion, expanded in zip(phase.exact_motions, motions, strict=False):
+        series = watch.series(motion)
+        if series is None:
+            one = located(expanded, watch.along, found.time, found.rest, left)
+            time, late = one.time, one.width * FLOOR
+        else:
+            time, late = sharpened(series, arb(found.time) + arb(found.rest)), 0.0
         if not time.is_finite():
             raise NotLocated
         crossings.append(Crossing(time, watch, *motion.state(time)))
+    if len(crossings) == 1:
+        # The motion was exact, and its time is known in pairs.
+        crossings.append(Crossing(time + late, watch, *motion.state(time + late)))
     return crossings
 
 

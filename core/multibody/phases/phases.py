@@ -7,15 +7,16 @@ summed up.
 
 from __future__ import annotations
 
+import copy
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from flint import arb
 
 from core.balls import distance_bound, precision
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
-from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero
 from core.multibody.contacts.complementarity import Decided, decided
 from core.multibody.contacts.conditions_of_states import LOOKED
 from core.multibody.contacts.contact_responses import slip_rate
@@ -24,6 +25,7 @@ from core.multibody.contacts.contact_states import Problem, State, change_of, ph
 from core.multibody.contacts.impacts import Impact, approaching, impact
 from core.multibody.equations.dynamics import kinetic
 from core.multibody.equations.packed import nearest
+from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
@@ -37,6 +39,8 @@ from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
 from core.multibody.table.facing import facing, is_on_a_corner
+from core.multibody.table.law_pieces import Argument, Key, switching
+from core.multibody.table.table import Table
 from core.systems.trajectory import ImpactErrors, MotionEvent
 
 MOST_EVENTS = 500
@@ -86,6 +90,7 @@ class _Run:
         self.tracks = Tracks(table.units, table.q, table.v)
         self.states = [State.OPEN] * len(self.unilateral)
         self.decided = Decided(self.states, list(self.unilateral))
+        self.described, self.arguments = base, dict[Key, Argument]()
         self.turning: list[str] = []
         self.bounced: dict[int, int] = {}
 
@@ -111,6 +116,7 @@ class _Run:
                 self._stop(problem)
                 return
             phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start)
+            phase.arguments = tuple(self.arguments.values())
             self.motion.phases.append(phase)
             if self._accumulate(phase):
                 continue
@@ -258,13 +264,55 @@ class _Run:
             )
             self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss, errors))
 
+    def _choose(self, q: Sequence[Ball], v: Sequence[Ball]) -> Decided | Problem:
+        """Find the pieces of formulas and the states of what touches, which may depend on one another."""
+        found: list[Decided | Problem] = []
+
+        def moving(table: Table) -> Table | None:
+            found.append(decided(table, self.unilateral, self.touching, q, v))
+            states = found[-1]
+            if isinstance(states, Problem):
+                return None
+            return phase_table(table, states.unilateral, states.states, q, v).table
+
+        table = self.described.measures.table
+        if not switching(table.laws):
+            return decided(table, self.unilateral, self.touching, q, v)
+        try:
+            chosen = table_in_pieces(table, q, v, moving)
+        except NoPiece as fault:
+            if not self.motion.phases:
+                raise
+            return Problem(
+                "formula",
+                f"a formula of {fault.law.name} does not say how the motion goes on: either side of the zero on which "
+                "it depends leads back to it, or both lead away",
+                (fault.law.name,),
+                decided_by="friction that holds what is at rest, described by a contact",
+            )
+        if chosen is None:
+            return found[-1]
+        measures = copy.copy(self.described.measures)
+        measures.table = chosen.table
+        self.base = replace(self.described, measures=measures)
+        self._switch(chosen.arguments)
+        return decided(chosen.table, self.unilateral, self.touching, q, v)
+
+    def _switch(self, arguments: Mapping[Key, Argument]) -> None:
+        """Take up the arguments of formulas that hold now; where one has changed its sign there is an event."""
+        before = {key: one.sign for key, one in self.arguments.items()}
+        changed = [one for key, one in arguments.items() if before.get(key, one.sign) != one.sign]
+        for name in dict.fromkeys(name for one in changed for name in one.names):
+            self._event("switch", name)
+        self.arguments = dict(arguments)
+
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""
         q, v = self.tracks.wide()
-        table = self.base.measures.table
-        found = decided(table, self.unilateral, self.touching, q, v)
+        found = self._choose(q, v)
         if isinstance(found, Problem):
             return found
+        table = self.base.measures.table
         require_pressed_in_plane(self.base, found)
         now = phase_table(table, found.unilateral, found.states, q, v)
         self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
@@ -325,7 +373,7 @@ class _Run:
             tracks.part(phase.still, phase.share, FLOOR)
         phase.end = tracks.time
         # Where a facet ends, or a height above an edge beyond its ends, another is met, and not necessarily touched.
-        facets = self.unilateral[first.watch.number].facets
+        facets = first.watch.one.facets
         self._meet(phase, -1 if first.watch.what == "region" or facets else first.watch.number)
         return True
 
@@ -351,7 +399,9 @@ class _Run:
             few = len(self.motion.events) >= MANY or rate_share(self.unilateral[i], self.tracks) < SMALL
             listed = count >= (LATER_LISTED if few else LISTED)
             found = recurring(self.unilateral, i, phase, own_time, arb(self.end), listed=listed)
-            if found is None:
+            if found is None or not all(
+                tail.keeps_sign(one.law, one.sign) for tail in found.tails for one in phase.arguments if one.sign
+            ):
                 continue
             length = found.tails[0].length
             phase.end, phase.settles = phase.start + length, self.unilateral[i].name

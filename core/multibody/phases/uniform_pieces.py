@@ -18,10 +18,16 @@ from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, is_
 from core.multibody.equations.dynamics import Multipliers
 from core.multibody.equations.expansion import Expansion, Series, product, slope
 from core.multibody.equations.packed import pair, two_to
+from core.multibody.equations.starting_pieces import series_of
+from core.multibody.laws.law import Law
+from core.multibody.laws.tape import Op, Tape
 from core.multibody.search.curves import Curve
 from core.multibody.search.pieces import COEFFICIENTS, Pieces
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.table import Row, Table
+
+HIGHEST_DEGREE = 16
+"""Of polynomials in time whose zeros are found in balls, one derivative after another."""
 
 
 def uniform_motion(table: Table, accelerations: Sequence[Ball], multipliers: Multipliers) -> Expansion:
@@ -108,6 +114,34 @@ def _moved_by(table: Table, motion: Expansion, pushes: Sequence[Mapping[int, Ser
         for j, series in push.items():
             add(j, -multiplier[0], series)
     return all(is_zero(x) for series in left for x in series[1:])
+
+
+def polynomial_of(law: Law, motion: Expansion) -> Series | None:
+    """Return a formula along a motion with constant accelerations as a polynomial in time; None where it is none.
+
+    Its degree is that of the formula, which may be beyond that of the expansion of the motion.
+    """
+    tape, degrees = Tape.of([law]), list[int]()
+    for code, a, b, c, _ in tape.operations:
+        found = 0
+        if code in (Op.PLACE, Op.RATE):
+            every = [motion.places[i] for i, _, _ in tape.terms[b:c]]
+            found = max((k for place in every for k, x in enumerate(place) if not x.is_zero()), default=0)
+            found = max(found - int(code == Op.RATE), 0)
+        elif code in (Op.ADD, Op.SUBTRACT):
+            found = max(degrees[a], degrees[b])
+        elif code == Op.MULTIPLY:
+            found = degrees[a] + degrees[b]
+        elif code == Op.DIVIDE and tape.operations[b][0] == Op.NUMBER:
+            found = degrees[a]
+        elif code != Op.NUMBER:
+            return None
+        if found > HIGHEST_DEGREE:
+            return None
+        degrees.append(found)
+    order = degrees[tape.outputs[0]] + 1
+    places = [[*place, *[ZERO] * (order + 1 - len(place))] for place in motion.places]
+    return series_of(law, Expansion(places, []), order)
 
 
 @dataclass(frozen=True)

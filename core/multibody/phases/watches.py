@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,10 +10,13 @@ from core.multibody.algebra.polynomials import ONE, Ball
 from core.multibody.contacts.admissible_forces import AdmissibleForce, admissible
 from core.multibody.contacts.contact_states import PhaseTable, State
 from core.multibody.equations.expansion import Expansion, Series
+from core.multibody.laws.law import Law
+from core.multibody.phases.uniform_pieces import polynomial_of
 from core.multibody.search.curves import Curve
 from core.multibody.search.first_of_motion import Watched
 from core.multibody.search.pieces import Pieces
 from core.multibody.table.connection_effects import Limit, Unilateral
+from core.multibody.table.law_pieces import Argument
 
 
 @dataclass(frozen=True)
@@ -24,23 +27,29 @@ class Watch:
     ----------
     number : int
         Of the unilateral measure.
-    what : {"gap", "push", "grip", "slip", "length", "region"}
+    what : {"gap", "push", "grip", "slip", "length", "region", "switch"}
         A length is that of a part of a string, a spring or another line: where it is zero, the motion ends. A region is
-        that in which a corner meets a facet of another shape.
+        that in which a corner meets a facet of another shape, a switch the argument of a formula of several pieces.
     admissible : AdmissibleForce or None
         What has to be positive, for "push" and "grip".
+    argument : Law or None
+        Of a switch.
     """
 
     number: int
-    what: Literal["gap", "push", "grip", "slip", "length", "region"]
+    what: Literal["gap", "push", "grip", "slip", "length", "region", "switch"]
     one: Unilateral
     sense: int = 1
     admissible: AdmissibleForce | None = None
+    argument: Law | None = None
 
-    def series(self, motion: Expansion) -> Series:
-        """Return it along a motion."""
+    def series(self, motion: Expansion) -> Series | None:
+        """Return it along a motion with constant accelerations; None of a formula that is no polynomial."""
         if self.what in ("gap", "length", "region"):
             return motion.of(self.one.gap)
+        if self.argument is not None:
+            found = polynomial_of(self.argument, motion)
+            return None if found is None else [self.sense * x for x in found]
         if self.what == "slip":
             return [self.sense * x for x in motion.of_rates(self.one.slip or {})]
         assert self.admissible is not None
@@ -55,6 +64,8 @@ class Watch:
         """Return it along a motion in pieces."""
         if self.what in ("gap", "length", "region"):
             return pieces.of(self.one.gap)
+        if self.argument is not None:
+            return pieces.nothing().plus(self.sense * ONE, pieces.law(self.argument))
         if self.what == "slip":
             return pieces.nothing().plus(self.sense * ONE, pieces.of_rates(self.one.slip or {}))
         assert self.admissible is not None
@@ -83,6 +94,15 @@ def watches(
         Watch(i, "region", Unilateral(one.name, bound)) for i, one in enumerate(unilateral) for bound in one.region
     )
     return found
+
+
+def switches(arguments: Iterable[Argument]) -> list[Watch]:
+    """Return the arguments of formulas that change their sign where these change their piece."""
+    return [
+        Watch(-1, "switch", Unilateral(", ".join(one.names), {}), one.sign, argument=one.law)
+        for one in arguments
+        if one.sign and one.law.inputs
+    ]
 
 
 def lengths(limits: Sequence[Limit]) -> list[Watch]:

@@ -7,7 +7,7 @@ from their steps. So the polynomials of a later interval are as right as those o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -17,8 +17,11 @@ from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable, NotApplicable
-from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly
-from core.multibody.equations.packed import Packed, Units, two_to
+from core.formulas import names_of
+from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly, coordinate
+from core.multibody.equations.packed import Packed, Units, packed_values, two_to
+from core.multibody.laws.kernel import values_of_laws
+from core.multibody.laws.law import Input, Law
 from core.multibody.motion.whole import Whole, spread
 from core.multibody.search.curves import Curve, differentiate
 from core.multibody.search.taylor import ORDER, expand
@@ -123,6 +126,34 @@ class Pieces:
         for j, poly in line.items():
             total = total.plus(ZERO + 1, self.of(poly).times(self.rate(j)))
         return total
+
+    def law(self, law: Law) -> Curve:
+        """Return the value of a formula of one piece."""
+        inputs = {name: one for name, one in law.inputs.items() if name in names_of(law.root)}
+        # Every input is a coordinate of its own, so that rates have the powers of their own series.
+        own = {name: Input(coordinate(k)) for k, name in enumerate(inputs)}
+        laws = packed_values([replace(law, inputs=own, push={})])
+        curves = [self.of_input(one) for one in inputs.values()]
+        path = np.zeros((len(self.lengths), 2, (COEFFICIENTS + 1) * len(curves)))
+        largest = np.zeros(self.shape)
+        for k, curve in enumerate(curves):
+            path[:, :, k : COEFFICIENTS * len(curves) : len(curves)] = np.swapaxes(curve.values, 1, 2)
+            largest = np.maximum(largest, curve.sizes)
+        values, sizes = np.zeros((*self.shape, 2)), np.zeros(self.shape)
+        for p, each in enumerate(path):
+            space = np.zeros((len(laws.operations), COEFFICIENTS, 2))
+            for k in range(COEFFICIENTS):
+                values_of_laws(laws, each, len(curves), k, 1.0, space)
+            values[p], sizes[p] = space[laws.push_at[0, 1]], np.abs(space[..., 0]).max(axis=0)
+        sizes = np.maximum(sizes, largest)
+        # A power is known no better than later ones.
+        return Curve(values, np.maximum.accumulate(sizes[:, ::-1], axis=1)[:, ::-1])
+
+    def of_input(self, given: Input) -> Curve:
+        """Return what a name of a formula stands for."""
+        if not given.rate:
+            return self.of(given.form)
+        return self.of_rates({key[0]: {(): slope} for key, slope in given.form.items() if key})
 
     def force(self, force: Force) -> Curve:
         """Return a force.

@@ -46,16 +46,15 @@ def _to_corner(
     table: Packed, space: Saddle, products: Products, own: Floats, group: Integers, step: float, longest: float
 ) -> tuple[float, float]:
     """Return a step, and its part up to a corner of a formula; the series is that beyond a corner that is near."""
-    course, order = products.course, own.shape[1] - 1
+    way, order = products.way[0], own.shape[1] - 1
     within = min(step, longest)
-    found = abs(until_corner(table.laws, products.laws, course[0] * within, course, 0.0))
+    found = abs(until_corner(table.laws, products.laws, way * within))
     if found < NEAR * within:
         started(table, products)
         coefficients_pairs(table, space, products, order - 1)
         step = _step(table, products, own, group)
         within = min(step, longest)
-        found = abs(until_corner(table.laws, products.laws, course[0] * within, course, 0.0))
-    course[1:] = 0.0
+        found = abs(until_corner(table.laws, products.laws, way * within))
     return step, found if found < within else step
 
 
@@ -101,7 +100,7 @@ def expand(
     group = np.full(len(own), FORCES)
     group[:n] = table.group
     way = 1.0 if reach[0] > 0.0 else -1.0
-    products.course[0] = way
+    products.way[0] = way
     for s in range(q.shape[0]):
         entries_of_lines_pairs(table, q[s], lines)
         if inverted_pairs(table, lines, space) == FAILED:

@@ -18,10 +18,10 @@ from core.multibody.language.motion_formulas import (
     names_of_bodies,
 )
 from core.multibody.laws.law import Input, Law
-from core.multibody.laws.linear import linear_in_rates
 from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.formulas_of_time import clock
 from core.multibody.table.frames import Point
+from core.multibody.table.law_pieces import entered
 from core.multibody.table.measures import COMPONENTS, Measures
 from core.multibody.table.rows import add_rows
 from core.near_names import near_and_all
@@ -64,14 +64,8 @@ def add_law(
     numbers = measures.numerals.let
     inputs = {one: input_of(measures, one, own, path) for one in sorted(formula.names)}
     used = {one: numbers[one] for one in names_of(formula.root) if one in numbers}
-    rates = linear_in_rates(formula.root, inputs, used)
-    for one, factor in (rates or {}).items():
-        for key, slope in inputs[one].form.items():
-            if key:
-                for i, x in push.items():
-                    measures.table.add_damping(i, key[0], -factor * slope * x)
-    law = Law(name, path, formula.root, inputs, used, dict(push), rates is not None)
-    measures.table.laws.append(law)
+    law = Law(name, path, formula.root, inputs, used, dict(push))
+    measures.table.laws.append(entered(measures.table, law) if inputs else law)
     measures.conservative = False
     return len(measures.table.laws) - 1
 

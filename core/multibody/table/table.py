@@ -175,7 +175,7 @@ class Table:
     @property
     def acting(self) -> list[Law]:
         """The laws whose forces are no entries of D."""
-        return [law for law in self.laws if not law.in_damping]
+        return [law for law in self.laws if not law.in_table]
 
     def forces(self) -> list[Ball]:
         """Return b - K q - D q' + B(q, q') + G f(q, q') at the start."""

@@ -1,0 +1,139 @@
+"""On which pieces of its formulas a motion begins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from core.errors import InvalidParameter
+from core.formulas import names_of
+from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.equations.expansion import Expansion, Series, expansion, leading_sign
+from core.multibody.laws.law import Law
+from core.multibody.laws.series import LawSeries
+from core.multibody.table.law_pieces import Argument, Key, in_pieces, key_of
+from core.multibody.table.table import Table
+
+ORDER = 6
+"""Highest power of time by which a sign is decided: a force that grows with its cube moves a place by the fifth."""
+MOST_OPEN = 4
+"""Arguments of which the signs may have to be tried: sixteen combinations."""
+
+Moving = Callable[[Table], Table | None]
+"""From a table of one piece to that by which its coordinates move, which contacts may decide; None if they do not."""
+
+
+class NoPiece(InvalidParameter):
+    """Neither side of the zero of an argument is left by the motion on that side, or both are.
+
+    Attributes
+    ----------
+    law : Law
+        The argument.
+    """
+
+    def __init__(self, law: Law, rule: str) -> None:
+        remedy = "describe friction that holds what is at rest by a contact, or start beside the zero"
+        super().__init__(law.path, rule, remedy=remedy)
+        self.law = law
+
+
+@dataclass(frozen=True)
+class InPieces:
+    """A table with formulas of one piece.
+
+    Attributes
+    ----------
+    table : Table
+    arguments : mapping of Key to Argument
+    tried : mapping of Key to int
+        Signs that are supposed: their arguments are zero, as far as places and rates tell.
+    """
+
+    table: Table
+    arguments: Mapping[Key, Argument]
+    tried: Mapping[Key, int]
+
+
+def table_in_pieces(table: Table, q: Sequence[Ball], v: Sequence[Ball], moving: Moving) -> InPieces | None:
+    """Return a table with its formulas on the pieces that follow a state; None if what moves decides none.
+
+    Where an argument is zero, its first derivative that does not vanish tells the piece. Where that depends on the
+    piece, the motion begins on the piece whose own motion leads there.
+
+    Raises
+    ------
+    NoPiece
+        Where no piece does, or more than one: neither side of the zero is left, or the formula does not say which.
+    InvalidParameter
+        For an argument without a value.
+    """
+    kept: list[Mapping[Key, int]] = []
+    undecided, last = False, None
+    for one in _candidates(table, q, v):
+        if not one.tried:
+            return one
+        last, own = one, moving(one.table)
+        if own is None:
+            undecided = True
+            continue
+        motion = expansion(own, ORDER)
+        signs = {key: leading_sign(series_of(one.arguments[key].law, motion, ORDER)[1:]) for key in one.tried}
+        if all(sign in (0, one.tried[key]) for key, sign in signs.items()) and signs not in kept:
+            kept.append(signs)
+    assert last is not None, "there is a candidate at least"
+    if len(kept) != 1:
+        if undecided and not kept:
+            return None
+        argument = last.arguments[next(iter(last.tried))].law
+        raise NoPiece(argument, "lead away from the zero of what its pieces depend on, on one side alone")
+    return InPieces(*in_pieces(table, _signs(q, v, kept[0])), kept[0])
+
+
+def _candidates(table: Table, q: Sequence[Ball], v: Sequence[Ball]) -> Iterator[InPieces]:
+    """Yield tables of one piece, one for each combination of signs that a state leaves open."""
+    waiting: list[dict[Key, int]] = [{}]
+    while waiting:
+        tried = waiting.pop()
+        try:
+            yield InPieces(*in_pieces(table, _signs(q, v, tried)), tried)
+        except _Open as at:
+            if len(tried) == MOST_OPEN:
+                raise NoPiece(at.law, f"have at most {MOST_OPEN} zeros of what pieces depend on") from None
+            waiting += [{**tried, key_of(at.law): sign} for sign in (-1, 1)]
+
+
+class _Open(Exception):
+    """A state does not tell the sign of an argument."""
+
+    def __init__(self, law: Law) -> None:
+        super().__init__(law)
+        self.law = law
+
+
+def _signs(q: Sequence[Ball], v: Sequence[Ball], tried: Mapping[Key, int]) -> Callable[[Law], int]:
+    """Return the signs of arguments just after a state, as far as places and rates tell or as they are supposed."""
+
+    def sign(law: Law) -> int:
+        rated = any(one.rate for name, one in law.inputs.items() if name in names_of(law.root))
+        state = Expansion([[x, y] for x, y in zip(q, v, strict=True)], [])
+        series = series_of(law, state, 1 if rated else 2)
+        if not series[0].is_finite():
+            raise InvalidParameter(law.path, "have a value: it divides by zero, or leaves the domain of a function")
+        found = leading_sign(series)
+        if found or not law.inputs:
+            return found
+        if key_of(law) not in tried:
+            raise _Open(law)
+        return tried[key_of(law)]
+
+    return sign
+
+
+def series_of(law: Law, motion: Expansion, count: int) -> Series:
+    """Return the first coefficients of a formula along a motion, of which those of its rates are one less."""
+    part = LawSeries([replace(law, push={})])
+    rates = [[*((k + 1) * x for k, x in enumerate(place[1:])), ZERO] for place in motion.places]
+    for k in range(count):
+        part.add_to([ZERO] * len(motion.places), motion.places, rates, k)
+    return part.values[part.tape.outputs[0]]
