@@ -44,7 +44,7 @@ ALLOWED["multibody"] = (
 
 WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",
        "prometheus_client", "service"}  # fmt: skip
-OUTER = ("assessment", "find", "sensitivities", "studies", "work_precision")
+OUTER = ("assessment", "find", "fits", "sensitivities", "studies", "work_precision")
 """Modules that compare results across packages, and may therefore import all of core."""
 
 SERVICE_LAYERS = (
@@ -271,6 +271,11 @@ TESTED_IN |= {
     f"core/assessment/feedback/{name}.py": "core/assessment/feedback/test_languages.py"
     for name in ("english", "french", "german", "spanish")
 }
+TESTED_IN |= {
+    f"core/fits/{name}.py": "core/fits/test_fit.py"
+    for name in ("comparison", "computed", "model", "problem", "search", "statistics", "wording")
+}
+TESTED_IN["core/fits/unknowns.py"] = "service/test_fits.py"
 TESTED_IN["core/assessment/feedback/entry_fault.py"] = "core/assessment/test_typed_entry.py"
 TESTED_IN |= {
     f"core/find/{name}.py": "core/find/test_search.py"

@@ -25,11 +25,12 @@ MOST_POINTS = 4000
 
 @dataclass(frozen=True)
 class Line:
-    """Points that belong together, each coordinate of shape (n,)."""
+    """Points that belong together, each coordinate of shape (n,), joined by a curve or, as `dots`, each for itself."""
 
     label: str
     x: Floats
     y: Floats
+    dots: bool = False
 
 
 @dataclass(frozen=True)
@@ -117,10 +118,11 @@ def _drawn(panel: Panel, top: float) -> Iterator[str]:
     for k, line in enumerate(panel.lines):
         colour = COLOURS[k % len(COLOURS)]
         every = slice(None, None, max(1, ceil(len(line.x) / MOST_POINTS)))
-        points = " ".join(
-            f"{px:.1f},{py:.1f}"
-            for px, py in zip(x.at(line.x[every]).tolist(), y.at(line.y[every]).tolist(), strict=True)
-        )
+        places = [*zip(x.at(line.x[every]).tolist(), y.at(line.y[every]).tolist(), strict=True)]
+        if line.dots:
+            yield from (f'<circle cx="{px:.1f}" cy="{py:.1f}" r="1.5" fill="{colour}"/>' for px, py in places)
+            continue
+        points = " ".join(f"{px:.1f},{py:.1f}" for px, py in places)
         yield f'<polyline points="{points}" fill="none" {stroke(k)} stroke-width="1.2" stroke-linejoin="round"/>'
         if len(line.x) == 1:
             yield f'<circle cx="{points.partition(",")[0]}" cy="{points.partition(",")[2]}" r="3" fill="{colour}"/>'

@@ -15,6 +15,7 @@ from service.routes.certified.surfaces import CERTIFIED_ELLIPSOID
 from service.routes.described_scenes import DESCRIBED_SCENES
 from service.routes.examples import examples
 from service.routes.find import finding
+from service.routes.fits import fitting
 from service.routes.plan import planning
 from service.routes.rotation.ensemble import ENSEMBLE
 from service.routes.rotation.precession import PRECESSION
@@ -45,11 +46,13 @@ def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostR
     in_doubles = tuple(with_sensitivities(naming_certified(route, paths)) for route in ordinary)
     answering = (*in_doubles, *certified)
     find = finding(in_doubles, certified)
+    fits = fitting(in_doubles)
     # A question asked backwards is a question that may be planned, graded and varied itself.
-    studies = studying((*answering, find))
+    studies = studying((*answering, find, fits))
     about_others = (
-        planning((*answering, find, studies)),
+        planning((*answering, find, fits, studies)),
         find,
+        fits,
         assessing((*in_doubles, find), certified),
         varying((*in_doubles, find), certified),
         studies,

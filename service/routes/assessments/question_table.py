@@ -105,14 +105,14 @@ def within_question() -> Iterator[None]:
         with inside_field(*WITHIN):
             yield
     except Refusal as refusal:
-        raise _moved(refusal.problem) from None
+        raise moved_inside(refusal.problem, WITHIN) from None
     except Refused as refused:
-        raise _moved(refused.refusal.problem) from None
+        raise moved_inside(refused.refusal.problem, WITHIN) from None
 
 
-def _moved(problem: Problem) -> Refusal:
-    """Return the refusal of the question itself, with pointers into the document that holds it."""
+def moved_inside(problem: Problem, path: Path) -> Refusal:
+    """Return the refusal of a part of a document, with pointers into the document."""
     faults = problem.faults or (Fault("", problem.detail),)
-    moved = [Fault(pointer_of(WITHIN) + fault.pointer, fault.detail, fault.remedy) for fault in faults]
+    moved = [Fault(pointer_of(path) + fault.pointer, fault.detail, fault.remedy) for fault in faults]
     code = problem.type.code if problem.type.status == 422 else "invalid-parameter"
     return Refusal(code, headline(moved), faults=moved, extra=problem.extra)
