@@ -12,7 +12,7 @@ from core.arrays import Floats, largest_magnitude
 from core.assessment.figures import steps_of
 from core.assessment.propagation import SETTINGS, at, changed, numbers_of
 from core.assessment.question_source import Source
-from core.errors import InvalidParameter, Path, inside_field, pointer_of
+from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, inside_field, pointer_of
 from core.fits.computed import Computed
 from core.fits.losses import Robust
 from core.fits.model import Model
@@ -117,6 +117,25 @@ def fit(
     MechanicsError
         What the question is refused with at every start.
     """
+    try:
+        with np.errstate(all="ignore"):
+            return _fitted(source, request, data, unknown, nuisance, robust, trials or source)
+    except MechanicsError:
+        raise
+    except (np.linalg.LinAlgError, OverflowError, ValueError) as fault:
+        # Of SciPy and numpy, about numbers that are not finite.
+        raise _out_of_range() from fault
+
+
+def _fitted(
+    source: Source,
+    request: Any,
+    data: Data,
+    unknown: Sequence[Unknown],
+    nuisance: Sequence[Nuisance],
+    robust: Robust | None,
+    trials: Source,
+) -> Fit:
     paths = [_path(one, k) for k, one in enumerate(unknown)]
     doubles = {path for path in paths if paths.count(path) > 1}
     if doubles:
@@ -126,7 +145,7 @@ def fit(
     measured = data.measured
     with inside_field("data"):
         rows = measured.observations()
-        computed = Computed(trials or source, request, paths, data.figures, rows.times, len(rows.rows))
+        computed = Computed(trials, request, paths, data.figures, rows.times, len(rows.rows))
         stated = computed.stated(begun, source)
         factors = [measured.factor(name, unit) for name, (unit, _) in zip(rows.names, stated, strict=True)]
         observed = rows.times_factors(factors)
@@ -149,6 +168,8 @@ def fit(
     numbers, slopes, left = polished(problem, ends[0][0])
     errors = [bound for _, bound in computed.stated(numbers[: len(unknown)], source)]
     found = statistics(problem, numbers, slopes, left, errors)
+    if not found.finite:
+        raise _out_of_range()
     residuals = observed.values - model.shown(numbers)
     names = (*(one.pointer for one in unknown), *model.names)
     at_ends = tuple(name for name, end in zip(names, problem.at_ends(numbers), strict=True) if end)
@@ -164,6 +185,11 @@ def fit(
         _others(ends, found, numbers, problem.unit),
         computed.evaluations,
     )
+
+
+def _out_of_range() -> NotApplicable:
+    remedy = "choose units in which data, deviations and numbers are moderate"
+    return NotApplicable("the fit leaves the range of doubles", path=("data", "columns"), remedy=remedy)
 
 
 def _path(unknown: Unknown, index: int) -> Path:

@@ -50,7 +50,8 @@ class Problem:
     ) -> None:
         self.model, self.data, self.robust, self.start = model, data, robust, start
         spread = np.std(data.values, axis=0)
-        spread = np.where(spread > 0.0, spread, np.maximum(np.max(np.abs(data.values), axis=0), 1e-300))
+        largest = np.max(np.abs(data.values), axis=0)
+        spread = np.where(spread > 0.0, spread, np.where(largest > 0.0, largest, 1.0))
         self.unit = float(spread[0]) if data.deviations is None else 1.0
         """Of the residuals: standard deviations, or the spread of the only column where that is to be estimated."""
         self.weights = np.full_like(data.values, 1.0 / self.unit) if data.deviations is None else 1.0 / data.deviations

@@ -43,6 +43,8 @@ class Statistics:
     Attributes
     ----------
     covariance : ndarray, shape (k, k)
+    standard_errors : ndarray, shape (k,)
+        Roots of the variances, also where these are too small for doubles.
     determined : ndarray of bool, shape (k,)
         Which of them the data determine; the others have no error.
     undetermined : list of Undetermined
@@ -63,6 +65,7 @@ class Statistics:
     """
 
     covariance: Floats
+    standard_errors: Floats
     determined: np.ndarray[Any, np.dtype[np.bool_]]
     undetermined: list[Undetermined]
     chi_squared: float
@@ -74,9 +77,10 @@ class Statistics:
     outliers: list[int]
 
     @property
-    def standard_errors(self) -> Floats:
-        """Roots of the variances."""
-        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+    def finite(self) -> bool:
+        """Whether all of it is in the range of doubles."""
+        arrays = (self.covariance, self.model_error, self.half_widths, self.standard_errors)
+        return all(np.isfinite(one).all() for one in (*arrays, self.chi_squared, self.deviation))
 
 
 def statistics(problem: Problem, numbers: Floats, slopes: Floats, left: Floats, errors: Sequence[float]) -> Statistics:
@@ -108,6 +112,7 @@ def statistics(problem: Problem, numbers: Floats, slopes: Floats, left: Floats, 
     factor = 1.0 if robust is None else robust.variance_factor(residuals[: problem.rows] / deviation, count)
     inverse = (rows[seen].T / singular[seen] ** 2) @ rows[seen]
     covariance = deviation**2 * factor * inverse * np.outer(scales, scales)
+    standard_errors = deviation * factor**0.5 * np.linalg.norm(rows[seen] / singular[seen, None], axis=0) * scales
     lost = rows[~seen]
     determined = ~np.any(np.abs(lost) > INVOLVED, axis=0) if len(lost) else np.ones(count, dtype=bool)
     # The worst case: every error of a row has the sign that moves the number most.
@@ -117,7 +122,7 @@ def statistics(problem: Problem, numbers: Floats, slopes: Floats, left: Floats, 
     quantile = float(special.ndtri(0.5 + 0.5 * CONFIDENCE))
     if not known and freedom > 0:
         quantile = float(special.stdtrit(freedom, 0.5 + 0.5 * CONFIDENCE))
-    half = quantile * np.sqrt(np.maximum(np.diag(covariance), 0.0)) + model_error
+    half = quantile * standard_errors + model_error
     limit = float(special.ndtri(1.0 - 0.5 * CHANCE_OF_ONE / problem.rows)) * deviation
     beyond = np.abs(residuals[: problem.rows]).reshape(problem.data.values.shape) > limit
     probability = float(special.chdtrc(freedom, chi_squared)) if known and freedom > 0 else None
@@ -128,6 +133,7 @@ def statistics(problem: Problem, numbers: Floats, slopes: Floats, left: Floats, 
     ]
     return Statistics(
         covariance,
+        standard_errors,
         determined,
         [*(Undetermined(_largest_one(row), None) for row in lost), *poor],
         chi_squared * problem.unit**2,

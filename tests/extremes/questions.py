@@ -489,6 +489,48 @@ def studies() -> Named:
         )
 
 
+def fits() -> Named:
+    """Yield a throw whose places are measured, of all sizes, and data that say nothing, or too little."""
+    times = [0.0, 0.1, 0.2, 0.3, 0.5]
+    for power in (-300, -160, -3, 0, 160, 300):
+        size = 10.0**power
+        places = [size * (3.0 * t - 4.905 * t * t) for t in times]
+        for name, changes in {
+            "one deviation": {"standard_deviations": {"y": 0.01 * size}},
+            "an estimated one": {},
+            "a tiny one": {"standard_deviations": {"y": 1e-300}},
+            "a huge one": {"standard_deviations": {"y": 1e300}},
+        }.items():
+            yield f"a throw of size 1e{power}, {name}", _fit(times, places, size, **changes)
+    for name, places in {
+        "zeros": [0.0] * 5,
+        "one value": [1.0] * 5,
+        "the largest": [1.7e308, -1.7e308, 1.7e308, 0.0, 1.0],
+        "the least": [5e-324, 0.0, -5e-324, 0.0, 0.0],
+    }.items():
+        yield f"places that are {name}", _fit(times, places, 1.0)
+        yield f"places that are {name}, with a deviation", _fit(times, places, 1.0, standard_deviations={"y": 0.1})
+    for name, other in {
+        "far away": [1e300, -1e300, 1e9, -1e9, 0.0],
+        "before the start": [-1.0, -2.0, -3.0, -0.5, 0.0],
+    }.items():
+        yield f"times that are {name}", _fit(other, [1.0, 2.0, 3.0, 4.0, 5.0], 1.0)
+
+
+def _fit(times: list[float], places: list[float], size: float, **data: Any) -> Question:
+    request = {
+        "gravity": [0, "-g"],
+        "let": {"g": 9.0 * size, "v": 2.0 * size},
+        "bodies": {"p": {"mass": 1, "at": [0, 0], "velocity": [0, "v"]}},
+    }
+    measured = {"columns": {"t": times, "y": places}, "times": "t", "figures": {"y": "p.position.y"}}
+    return {
+        "question": {"path": "/v1/scenes", "request": request},
+        "data": measured | data,
+        "unknown": [{"pointer": "/let/g"}, {"pointer": "/let/v"}],
+    }
+
+
 def _first_number(value: Any, pointer: str = "") -> str | None:
     """Return the pointer of the first number of a request."""
     if isinstance(value, dict | list):
@@ -524,4 +566,5 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/variants": variants,
     "/v1/find": findings,
     "/v1/studies": studies,
+    "/v1/fits": fits,
 }

@@ -237,7 +237,8 @@ def answered(path: str, request: Any) -> tuple[Any, bytes]:
 
 
 def test_random_questions_are_drawn_for_every_endpoint() -> None:
-    assert {*DRAWN, *UNPLANNED} == set(ROUTES)
+    # Fits take longer than the slice of a plan; their examples are planned.
+    assert {*DRAWN, *UNPLANNED, "/v1/fits"} == set(ROUTES)
 
 
 @pytest.mark.parametrize("path", DRAWN)
