@@ -42,7 +42,7 @@ class Statistics:
 
     Attributes
     ----------
-    covariance : ndarray, shape (k, k)
+    covariance, correlation : ndarray, shape (k, k)
     standard_errors : ndarray, shape (k,)
         Roots of the variances, also where these are too small for doubles.
     determined : ndarray of bool, shape (k,)
@@ -65,6 +65,7 @@ class Statistics:
     """
 
     covariance: Floats
+    correlation: Floats
     standard_errors: Floats
     determined: np.ndarray[Any, np.dtype[np.bool_]]
     undetermined: list[Undetermined]
@@ -79,7 +80,7 @@ class Statistics:
     @property
     def finite(self) -> bool:
         """Whether all of it is in the range of doubles."""
-        arrays = (self.covariance, self.model_error, self.half_widths, self.standard_errors)
+        arrays = (self.covariance, self.correlation, self.model_error, self.half_widths, self.standard_errors)
         return all(np.isfinite(one).all() for one in (*arrays, self.chi_squared, self.deviation))
 
 
@@ -110,12 +111,16 @@ def statistics(problem: Problem, numbers: Floats, slopes: Floats, left: Floats, 
     deviation = 1.0 if known else _deviation(residuals, freedom)
     robust = problem.robust
     factor = 1.0 if robust is None else robust.variance_factor(residuals[: problem.rows] / deviation, count)
-    inverse = (rows[seen].T / singular[seen] ** 2) @ rows[seen]
-    covariance = deviation**2 * factor * inverse * np.outer(scales, scales)
-    standard_errors = deviation * factor**0.5 * np.linalg.norm(rows[seen] / singular[seen, None], axis=0) * scales
+    # Deviations of combinations that are independent, in columns; their lengths by row are those of the numbers.
+    apart = rows[seen].T / (singular[seen] / np.min(singular[seen], initial=np.inf))
+    lengths = np.linalg.norm(apart, axis=1)
+    unit_rows = apart / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    correlation = unit_rows @ unit_rows.T
+    standard_errors = lengths * (deviation * factor**0.5 / np.min(singular[seen], initial=np.inf)) * scales
     lost = rows[~seen]
     determined = ~np.any(np.abs(lost) > INVOLVED, axis=0) if len(lost) else np.ones(count, dtype=bool)
     # The worst case: every error of a row has the sign that moves the number most.
+    inverse = (rows[seen].T / singular[seen] ** 2) @ rows[seen]
     gains = np.abs((inverse * np.outer(scales, scales)) @ slopes[: problem.rows].T)
     by_row = (np.asarray(errors) * problem.weights).ravel()
     model_error = gains @ by_row + left
@@ -132,7 +137,8 @@ def statistics(problem: Problem, numbers: Floats, slopes: Floats, left: Floats, 
         if kept and deviation * factor**0.5 / value > 1.0
     ]
     return Statistics(
-        covariance,
+        np.outer(standard_errors, standard_errors) * correlation,
+        correlation,
         standard_errors,
         determined,
         [*(Undetermined(_largest_one(row), None) for row in lost), *poor],

@@ -213,9 +213,7 @@ def _view(found: Fit, others: Sequence[Fit]) -> Answer:
     known, data = found.statistics, found.data
     numbers = _numbers(found)
     count = found.unknowns
-    errors = np.where(known.standard_errors > 0.0, known.standard_errors, np.inf)
-    covariance = known.covariance[:count, :count]
-    correlation = covariance / np.outer(errors[:count], errors[:count])
+    covariance, correlation = known.covariance[:count, :count], known.correlation[:count, :count].copy()
     np.fill_diagonal(correlation, 1.0)
     lost = ~known.determined[:count]
     estimated = data.deviations is None

@@ -517,7 +517,7 @@ def fits() -> Named:
         yield f"times that are {name}", _fit(other, [1.0, 2.0, 3.0, 4.0, 5.0], 1.0)
 
 
-def _fit(times: list[float], places: list[float], size: float, **data: Any) -> Question:
+def _fit(times: list[float], places: list[float], size: float, **data: Any) -> Asked:
     request = {
         "gravity": [0, "-g"],
         "let": {"g": 9.0 * size, "v": 2.0 * size},
