@@ -64,6 +64,8 @@ class Impact:
         Whether several take impulses at once.
     shared : set of int
         Measures of which other impulses have the same outcome: places side by side on one body.
+    in_turn : bool
+        Whether contacts have acted one after another, so that impulses are known without their width.
     """
 
     v: list[Ball]
@@ -73,6 +75,25 @@ class Impact:
     changes: dict[int, list[Ball]]
     together: bool = False
     shared: set[int] = field(default_factory=set)
+    in_turn: bool = False
+
+    def widened(self, others: Sequence[Impact]) -> Impact:
+        """Return it with the impulses and works of impacts in turn as wide as their difference from those of others.
+
+        The others are the same impact, of states between which that is known of which this is the middle.
+        """
+        if not self.in_turn:
+            return self
+        nothing = (ZERO, ZERO, ZERO)
+        every = {i for one in (self, *others) for i in one.impulses}
+        impulses, works = dict(self.impulses), dict(self.works)
+        for i in every:
+            for other in others:
+                own, beside = impulses.get(i, nothing), other.impulses.get(i, nothing)
+                impulses[i] = (own[0].union(beside[0]), own[1].union(beside[1]), own[2].union(beside[2]))
+                work: Ball = works.get(i, ZERO)
+                works[i] = work.union(other.works.get(i, ZERO))
+        return replace(self, impulses=impulses, works=works)
 
     def components(self, i: int) -> dict[str, Ball]:
         """Return the impulse of a measure by its names: along the gap, and of friction in the plane or along axes."""
@@ -88,10 +109,11 @@ class Impact:
 
 @dataclass(frozen=True)
 class _Outcome:
-    """Impulses by line, and the work of each measure that gives them."""
+    """Impulses by line, the work of each measure that gives them, and whether they act one after another."""
 
     impulses: Forces
     works: dict[int, Ball]
+    in_turn: bool = False
 
 
 def _outcome(group: Sequence[int], impulses: Forces, rates: RatesByLine, found: Responses) -> _Outcome:
@@ -144,7 +166,7 @@ def impact(
     impulses: dict[int, tuple[Ball, Ball, Ball]] = {}
     works: dict[int, Ball] = {}
     changes: dict[int, list[Ball]] = {}
-    together, shared, driven = False, set[int](), ZERO
+    together, in_turn, shared, driven = False, False, set[int](), ZERO
     for group in found.clusters():
         if not approaching(unilateral, group, q, v):
             continue
@@ -155,6 +177,7 @@ def impact(
         if isinstance(outcome, Problem):
             return outcome
         works.update(outcome.works)
+        in_turn = in_turn or outcome.in_turn
         driven = driven + _driven(table, found, outcome.impulses)
         for i in group:
             own = (normal[i], *found.grip(i))
@@ -176,7 +199,7 @@ def impact(
             tuple(unilateral[i].name for i in impulses),
             decided_by='"impacts": "stronge", or a smaller coefficient of restitution',
         )
-    return Impact(after, impulses, works, unilateral, changes, together, shared)
+    return Impact(after, impulses, works, unilateral, changes, together, shared, in_turn)
 
 
 def _driven(table: Table, found: Responses, impulses: Forces) -> Ball:
@@ -227,10 +250,10 @@ def _group(
     names = tuple(unilateral[i].name for i in group)
     given = [i for i in group if unilateral[i].order is not None]
     if len(given) == len(group) > 1:
-        return _in_turn(unilateral, _by_order(unilateral, given), rates, found)
+        return _in_turn(unilateral, _by_order(unilateral, given), *_without_width(rates, found))
     if simultaneous == "in order" and len(group) > 1:
         others = [[i] for i in group if unilateral[i].order is None]
-        return _in_turn(unilateral, [*_by_order(unilateral, given), *others], rates, found)
+        return _in_turn(unilateral, [*_by_order(unilateral, given), *others], *_without_width(rates, found))
     if settled is not None and all(unilateral[i].law == "newton" for i in group):
         known = [settled.changes[i] for i in group if i in settled.changes]
         change = [sum(parts, ZERO) for parts in zip(*known, strict=True)] or [ZERO] * len(v)
@@ -341,7 +364,7 @@ def _in_turn(
     for _ in range(_MOST_IN_TURN):
         hit = next((one for one in order if any(now[normal[i]] < -least for i in one)), None)
         if hit is None:
-            return _Outcome(_at_the_limit(total, now, least, found), works)
+            return _Outcome(_at_the_limit(total, now, least, found), works, in_turn=True)
         impulses = impulses_together(unilateral, hit, now, found)
         if isinstance(impulses, Problem):
             return impulses

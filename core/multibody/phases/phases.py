@@ -175,24 +175,24 @@ class _Run:
             if isinstance(outcome, Problem):
                 self._stop(outcome)
                 return False
-            self._record(hit, outcome)
-            rates = [outcome.v]
-            if not tracks.exact:
-                rates = []
-                for track in tracks.each:
-                    own = track.q, track.v
-                    how = self.base.scene.simultaneous
-                    alike = impact(table, unilateral, self.touching, *own, settled=outcome, simultaneous=how)
-                    if isinstance(alike, Problem):
-                        self._stop(alike)
-                        return False
-                    rates.append(alike.v)
+            alike: list[Impact] = []
+            for track in tracks.each if not tracks.exact else ():
+                state, how = (track.q, track.v), self.base.scene.simultaneous
+                one = impact(table, unilateral, self.touching, *state, settled=outcome, simultaneous=how)
+                if isinstance(one, Problem):
+                    self._record(hit, outcome)
+                    self._stop(one)
+                    return False
+                alike.append(one)
+            self._record(hit, outcome.widened(alike))
+            rates = [found.v for found in alike or [outcome]]
             tracks.each = [replace(track, v=v) for track, v in zip(tracks.each, rates, strict=True)]
             for i in settling:
-                one = self.unilateral[i]
+                settled = self.unilateral[i]
                 # The end of bounces that are not listed is an event already.
-                if self.states[i] is State.OPEN and one.restitution > 0 and one.name != self.motion.phases[-1].settles:
-                    self._event("settle", one.name)
+                listed = settled.name == self.motion.phases[-1].settles
+                if self.states[i] is State.OPEN and settled.restitution > 0 and not listed:
+                    self._event("settle", settled.name)
         self._stop(Problem("no-progress", "impacts follow one another without end", ()))
         return False
 
