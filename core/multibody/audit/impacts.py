@@ -243,5 +243,6 @@ def _impulses(
             for name, value in event.impulses.items() if event.name in ends else ():
                 force = ends[event.name] if name == "normal" else f"{event.name}.{name}"
                 shared = event.errors.impulses.get(name, 0.0) is None
-                impulses.setdefault(force, np.zeros(len(groups)))[k] = np.nan if shared else value
+                # Of impacts in turn a contact may take part in several at one time.
+                impulses.setdefault(force, np.zeros(len(groups)))[k] += np.nan if shared else value
     return impulses

@@ -18,6 +18,7 @@ from flint import arb, arb_mat
 
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.rank import Elimination
 from core.multibody.contacts.contact_responses import (
     Forces,
     Responses,
@@ -382,14 +383,15 @@ def _in_turn(
 def _at_the_limit(total: Forces, now: RatesByLine, least: float, found: Responses) -> Forces:
     """Return impulses that leave no rate at all where impacts in turn have left less than the least that counts.
 
-    What is left would be an impact again at the same instant. Where several shares of an impulse leave nothing, the
-    impulses are kept.
+    What is left would be an impact again at the same instant. Of several shares of an impulse that leave nothing one is
+    taken.
     """
     lines = [a for a, x in now.items() if total.get(a, ZERO) != 0 and float(abs(x)) <= least]
     if all(now[a] == 0 for a in lines):
         return total
-    try:
-        more = arb_mat([[found.matrix[a][b] for b in lines] for a in lines]).solve(arb_mat([[-now[a]] for a in lines]))
-    except ZeroDivisionError:
-        return total
-    return total | {a: total[a] + more[k, 0] for k, a in enumerate(lines)}
+    elimination = Elimination()
+    for a in lines:
+        left = elimination.add({b: found.matrix[a][b] for b in lines if found.matrix[a][b] != 0}, -now[a])
+        if left is not None and not is_zero(left):
+            return total
+    return total | {a: total[a] + more for a, more in zip(lines, elimination.solution(lines), strict=True)}

@@ -84,3 +84,17 @@ def test_words_that_do_not_exist_are_refused(change: dict[str, str], at: tuple[s
     with pytest.raises(InvalidParameter) as fault:
         solve_scene(read(scene))
     assert fault.value.path == ("connections", 0, "impacts")
+
+
+def test_a_box_that_lands_flat_in_order_comes_to_rest() -> None:
+    """Its corners strike in turn without end: the limit is rest, and their impulses add up to the momentum."""
+    shape = {"kind": "box", "width": 0.2, "height": 0.1}
+    floor = {"kind": "contact", "name": "f", "place": "b", "on": {"at": [0, 0]}, "friction": 0.5}
+    bodies = {"b": {"mass": 2, "shape": shape, "at": [0, 0.37], "velocity": [-0.5, 0]}}
+    scene = {"gravity": [0, -9.81], "bodies": bodies, "connections": [floor], "simultaneous": "in order"}
+    answer = solve_scene(read(scene), [1.0])
+    assert [event.name for event in answer.events] == ["f.1", "f.2"]
+    total = sum(event.impulses["normal"] for event in answer.events)
+    assert total == pytest.approx(2 * (2 * 9.81 * 0.32) ** 0.5, rel=1e-15)
+    assert sum(event.impulses["friction"] for event in answer.events) == pytest.approx(1, rel=1e-15)
+    assert column(answer, "b.velocity").values[0].tolist() == [0, 0]
