@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check kernels environment openapi judge plans record peers peers-scenes newest clean
+.PHONY: serve test check kernels environment openapi judge plans textbook record peers peers-scenes newest clean
 .PHONY: browser pictures vendor site release release-contract
 
 serve: $(ENV)/runs
@@ -71,6 +71,10 @@ judge: environment
 
 plans: environment
 	RANDOM_QUESTIONS=300 $(BIN)/python -m pytest -q tests/service/test_plan.py -k random
+
+# Every textbook question that is asked backwards, some of them for seconds.
+textbook: environment
+	WHOLE_TEXTBOOK=1 $(BIN)/python -m pytest -q tests/service/textbook
 
 record: environment
 	$(BIN)/python -m benchmarks.method_record

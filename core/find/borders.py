@@ -22,6 +22,9 @@ FIRST = 32
 MOST_HALVINGS = 128
 """Halvings of a border, as `core.multibody.statics.thresholds` has it: 64 reach neighbouring doubles."""
 
+MOST_SAMPLES = 600
+"""Questions after which no border is narrowed down any further: its error is then what is left of its interval."""
+
 MOST_BORDERS = 100
 """Borders that are located."""
 
@@ -63,7 +66,7 @@ def _between(
         return []
     first, last = low, high
     for _ in range(MOST_HALVINGS):
-        if neighbours(low, high):
+        if neighbours(low, high) or len(curve.known) > MOST_SAMPLES:
             break
         middle = curve.varied.middle(low, high)
         here = case(middle)

@@ -158,12 +158,21 @@ def _several(evaluations: Evaluations, conditions: Sequence[Condition]) -> Findi
     evaluations.at(tuple(one.at_share(0.5) for one in evaluations.varied))
     system = solved_system(evaluations, [float(one.equals or 0.0) for one in conditions])
     count = len(evaluations.varied)
+    unbounded = [
+        Notice(
+            "error-not-bounded",
+            f"near {', '.join(f'{x:.17g}' for x in one)} the figures have their values, but no box "
+            "about it was found on whose faces they are decided; it is left out",
+            ("until",),
+        )
+        for one in system.unbounded
+    ]
     return Findings(
         system.solutions,
         families=system.families,
         nearest=system.nearest,
         resolution=tuple((one.most - one.least) / (6 if count == 2 else 4) for one in evaluations.varied),
-        notices=_missing(evaluations, conditions),
+        notices=[*_missing(evaluations, conditions), *unbounded],
     )
 
 
@@ -183,7 +192,8 @@ def _missing(evaluations: Evaluations, conditions: Sequence[Condition]) -> list[
         raise refusal
     notices = _refusals(evaluations)
     for k, one in enumerate(conditions):
-        if any(sample.values[k] not in (None, False) for sample in answered):
+        absent = False if one.wanted == "happens" else None
+        if any(sample.values[k] is not absent for sample in answered):
             continue
         answer = evaluations.some_answer()
         if one.of_event:

@@ -43,7 +43,16 @@ SINGULAR = 1e-7
 """Ratio of singular values of the derivatives below which one combination of the inputs is not determined by them."""
 
 SAME_LINE = 1e-6
-"""Share of a range within which two families of solutions are one line."""
+"""Share of a range within which two solutions are one, and two families of solutions one line."""
+
+MOST_FAMILIES = 4
+"""Solutions of families after which no others are looked for: a curve of solutions has any number."""
+
+ASIDE = 2.0**-7
+"""Share of a range to one side at which another solution is looked for to tell a family from figures that touch."""
+
+REACH = 0.5
+"""By how much of its change over a cell a figure may miss its value in all corners for the cell to be looked into."""
 
 MOST_WIDENINGS = 20
 """Factors of four by which a box is widened until the figures are decided on its faces."""
@@ -56,6 +65,7 @@ class System:
     solutions: list[Solution] = field(default_factory=list)
     families: list[Family] = field(default_factory=list)
     nearest: Nearest | None = None
+    unbounded: list[tuple[float, ...]] = field(default_factory=list)
 
 
 def solved_system(evaluations: Evaluations, targets: Sequence[float]) -> System:
@@ -64,16 +74,21 @@ def solved_system(evaluations: Evaluations, targets: Sequence[float]) -> System:
     found = System()
     starts = search.starts()
     for start in starts:
+        if len(found.families) == MOST_FAMILIES:
+            break
         end = search.newton(start)
-        if end is None:
+        if end is None or any(search.near(end, one.inputs) for one in found.solutions):
             continue
-        family = search.family(end)
-        if family is not None:
+        direction = search.undetermined(end)
+        if direction is not None and search.continues(end, direction):
+            inputs = search.values(end)
             if not any(search.along(other, end) for other in found.families):
-                found.families.append(family)
+                found.families.append(Family(inputs, inputs, tuple(direction.tolist())))
             continue
-        solution = search.certified(end)
-        if solution is not None and not any(
+        solution = search.certified(end) if direction is None else None
+        if solution is None:
+            found.unbounded.append(search.values(end))
+        elif not any(
             _close(solution.inputs, other.inputs, np.array(solution.errors) + np.array(other.errors))
             for other in found.solutions
         ):
@@ -135,7 +150,7 @@ class _Search:
             inside = np.array([residual for residual in around if residual is not None])
             if len(inside) < len(corners):
                 continue
-            margin = inside.max(axis=0) - inside.min(axis=0)
+            margin = REACH * (inside.max(axis=0) - inside.min(axis=0))
             if (inside.min(axis=0) <= margin).all() and (inside.max(axis=0) >= -margin).all():
                 cells.append((self.size(inside.mean(axis=0)), (np.array(place) + 0.5) * step))
         cells.sort(key=lambda cell: cell[0])
@@ -202,17 +217,31 @@ class _Search:
              zip(inputs, self._varied, strict=True)]
         )  # fmt: skip
 
-    def family(self, shares: Floats) -> Family | None:
-        """Return the direction in which a solution is not determined, None if it is isolated."""
+    def undetermined(self, shares: Floats) -> Floats | None:
+        """Return the direction in which the figures do not change to first order, None if there is none."""
         jacobian = self.jacobian(shares)
         if jacobian is None:
             return None
         _, sizes, rows = np.linalg.svd(jacobian / self._scales[:, None])
         if sizes[-1] > SINGULAR * sizes[0]:
             return None
-        inputs = self.values(shares)
         largest = rows[-1][np.abs(rows[-1]).argmax()]
-        return Family(inputs, inputs, tuple(float(x) for x in rows[-1] / largest))
+        return np.asarray(rows[-1] / largest, dtype=np.float64)
+
+    def continues(self, shares: Floats, direction: Floats) -> bool:
+        """Return whether other solutions follow in a direction: it is a family, and not figures that touch."""
+        for side in (-1.0, 1.0):
+            aside = shares + side * ASIDE * direction
+            if (aside >= 0.0).all() and (aside <= 1.0).all():
+                other = self.newton(aside)
+                if other is not None and float(np.abs(other - shares).max()) > 0.5 * ASIDE:
+                    return True
+        return False
+
+    def near(self, shares: Floats, inputs: Sequence[float]) -> bool:
+        """Return whether a place is that of a solution."""
+        other = np.array([one.width(one.least, x) for one, x in zip(self._varied, inputs, strict=True)])
+        return bool((np.abs(shares - other) <= SAME_LINE).all())
 
     def along(self, family: Family, shares: Floats) -> bool:
         """Return whether a place is on the line of a family."""

@@ -165,6 +165,7 @@ def test_what_is_infinite_is_told_from_what_is_large(function: Function, infinit
     [
         (lambda x: "a" if x < 1.1 else "b" if x < 2.2 else "c", [1.1, 2.2], [("a", "b"), ("b", "c")]),
         (lambda x: x < 1.1, [1.1], [(True, False)]),
+        (lambda x: False if x < 1.1 else None, [1.1], [(False, None)]),
         (lambda x: sqrt(x - 1.0) if x >= 1.0 else None, [1.0], [(None, 0.0)]),
         (lambda x: sin(x) + (1e-3 if x > 1.23 else 0.0), [1.23], None),
         (lambda x: copysign(sqrt(abs(x - 1.23)), x - 1.23), [], None),
