@@ -26,6 +26,7 @@ from core.multibody.contacts.slip_directions import (
     along_slip,
     directions,
     directions_together,
+    one_of,
     turned,
 )
 from core.multibody.table.connection_effects import Unilateral
@@ -81,7 +82,7 @@ def decided(
         for i, state in zip(group, chosen.states, strict=True):
             states[i] = state
         for i, direction in chosen.directions.items():
-            unilateral[i] = turned(unilateral[i], direction)
+            unilateral[i] = turned(unilateral[i], one_of(direction))
     return Decided(states, unilateral)
 
 

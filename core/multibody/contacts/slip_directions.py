@@ -57,6 +57,11 @@ def turned(one: Unilateral, direction: Direction) -> Unilateral:
     )
 
 
+def one_of(direction: Direction) -> Direction:
+    """Return a direction without the width to which it is found: what moves on does so along one of them."""
+    return _unit(*direction)
+
+
 def _sum(a: Ball, first: LinearForm, b: Ball, second: LinearForm) -> LinearForm:
     found = {j: combined((a, first.get(j, {})), (b, second.get(j, {}))) for j in {*first, *second}}
     return {j: poly for j, poly in found.items() if poly}

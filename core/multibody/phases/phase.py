@@ -9,6 +9,7 @@ from functools import cached_property
 
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero
 from core.multibody.contacts.complementarity import Decided
+from core.multibody.contacts.contact_responses import slip_rate
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.contacts.projection import project
@@ -200,12 +201,17 @@ def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tr
     Where that is known from two tracks, each is put onto the rows of the phase: it came there by a series.
     """
     each, models, tables = [], [], []
+    # What begins to slide in space has no slip yet: what rounding leaves of one would be a direction.
+    rests = [one.across is not None and is_zero(slip_rate(one, *tracks.wide())) for one in found.unilateral]
+    onsets = [State.STICK if begun and state.sense else state for begun, state in zip(rests, found.states, strict=True)]
     for track in tracks.each:
         phase = phase_table(base.measures.table, found.unilateral, found.states, track.q, track.v)
         phase.table.rows = [row if row.name in turning else replace(row, slide=None) for row in phase.table.rows]
         if not tracks.exact:
-            project(phase.table, tracks.wide()[0])
-            tracks.settle(phase.table.q, phase.table.v)
+            onto = phase_table(base.measures.table, found.unilateral, onsets, track.q, track.v).table
+            project(onto, tracks.wide()[0])
+            tracks.settle(onto.q, onto.v)
+            phase.table.q, phase.table.v = onto.q, onto.v
             if track is tracks.first:
                 table = phase.table
                 # What is zero as far as it is known becomes zero on all tracks, which may then agree too well.

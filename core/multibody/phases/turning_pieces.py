@@ -1,15 +1,13 @@
-"""Pieces of a motion while friction turns with the slip: its series are formed in balls."""
+"""Pieces of a motion while friction turns with the slip: those of its steps, about any time in them."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from flint import arb
 
 from core.arrays import Floats
-from core.multibody.equations.expansion import expansion
 from core.multibody.equations.packed import GROUPS, pair, two_to
 from core.multibody.motion.series import lowest_bound, step_size
 from core.multibody.motion.whole import Whole
@@ -32,7 +30,7 @@ class ExpandedInBalls:
     kind: str
 
     def __call__(self, times: Floats, reach: Floats) -> Pieces:
-        """Return the pieces."""
+        """Return the pieces, none of which is longer than the step of the motion in which it begins."""
         table = self.whole.measures.table
         group = np.array([GROUPS[unit] for unit in table.units], dtype=np.int64)
         n, rows = len(table.names), len(table.rows)
@@ -41,20 +39,19 @@ class ExpandedInBalls:
         sizes, others = np.zeros(places.shape[:-1]), np.zeros(multipliers.shape[:-1])
         (_, turning), *_ = self.whole.parts
         assert isinstance(turning, TurningSlip)
-        q, v = self.whole.in_pairs(times, self.kind)
-        for s in range(len(times)):
-            places_now, rates_now = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
-            motion = expansion(replace(table, q=places_now, v=rates_now), ORDER, turning.chosen)
-            coefficients = np.array([[float(x) for x in places] for places in motion.places])
-            step = step_size(coefficients, group, TOLERANCE, lowest_bound(self.whole.arrays[0].laws.gaps, ORDER))
-            natural[s], exponent = step, math.ceil(math.log2(reach[s]))
-            if step < reach[s]:
+        lowest = lowest_bound(self.whole.arrays[0].laws.gaps, ORDER)
+        for s, time in enumerate(times.tolist()):
+            motion, rest = turning.about(self.kind, time)
+            coefficients = np.array([[float(x) for x in series[: ORDER + 1]] for series in motion.places])
+            step = step_size(coefficients, group, TOLERANCE, lowest)
+            natural[s], exponent = min(step, rest), math.ceil(math.log2(min(rest, reach[s])))
+            if step < min(rest, reach[s]):
                 exponent = math.floor(math.log2(step))
             lengths[s] = two_to(exponent)
             for i, series in enumerate(motion.places):
-                places[s, i] = [pair(x, k * exponent) for k, x in enumerate(series)]
+                places[s, i] = [pair(x, k * exponent) for k, x in enumerate(series[: ORDER + 1])]
             for i, series in enumerate(motion.multipliers):
-                multipliers[s, i] = [pair(x, k * exponent) for k, x in enumerate(series)]
+                multipliers[s, i] = [pair(x, k * exponent) for k, x in enumerate(series[:COEFFICIENTS])]
             for i in range(n):
                 sizes[s, i] = _falling(np.max(np.abs(places[s, group == group[i], :, 0]), axis=0))
             others[s] = _falling(np.max(np.abs(multipliers[s, :, :, 0]), axis=0, initial=0.0))

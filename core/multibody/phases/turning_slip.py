@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from flint import arb, arb_mat
+from flint import arb, arb_mat, arb_poly
 
 from core.arrays import Floats
 from core.balls import precision
@@ -45,6 +45,8 @@ _MOST_STEPS = 250
 
 _PART = 0.5
 """Share of the time in which slip could end that a step takes at most: the series diverges there."""
+_NO_REST = 2.0**-30
+"""Share of a step that is so little that the next one is followed from before its start."""
 _LONGEST = 1e6
 """Longest step (s), where slip does not change at all."""
 _KINDS = {"fine": (32, 2.0**-96), "check": (30, 2.0**-90)}
@@ -110,6 +112,23 @@ class TurningSlip(Motion):
                 self._step(found, order, tolerance)
         return found
 
+    def about(self, kind: str, time: float) -> tuple[Expansion, float]:
+        """Return the motion about a time, from the step in which it lies, and how much of the step is left (s).
+
+        After the end of the slip it is the last step that is followed.
+        """
+        run = self.run(kind, math.nextafter(time, math.inf))
+        with precision(_BITS):
+            at, last = arb(time), len(run.steps) - 1
+            k = min(max(bisect_right(run.starts, at) - 1, 0), last)
+            if k < last and float(run.starts[k + 1] - at) < _NO_REST * float(run.starts[k + 1] - run.starts[k]):
+                k += 1
+            rest = float(run.starts[k + 1] - at)
+            later = arb_poly([at - run.starts[k], 1])
+            motion = run.steps[k]
+            found = Expansion(*([_moved(x, later) for x in each] for each in (motion.places, motion.multipliers)))
+        return found, rest if rest > 0.0 else _LONGEST
+
     def _step(self, run: SlipSeries, order: int, tolerance: float) -> None:
         # Rows that follow from others at the start do so for good; on a state with its error they may not.
         motion = expansion(run.table, order, self.chosen)
@@ -174,6 +193,12 @@ class TurningSlip(Motion):
                 for i, series in enumerate(run.steps[k].places):
                     q[s, i], v[s, i] = pair(value(series, late), 0), pair(value(slope(series), late), 0)
         return q, v
+
+
+def _moved(series: Sequence[Ball], later: arb_poly) -> list[Ball]:
+    """Return the series of the same polynomial about a later time."""
+    found = arb_poly(list(series))(later).coeffs()
+    return [*found, *[ZERO] * (len(series) - len(found))]
 
 
 def _length(motion: Expansion, units: Sequence[str], fastest: dict[str, float], tolerance: float) -> Ball:

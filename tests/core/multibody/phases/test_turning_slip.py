@@ -1,0 +1,48 @@
+"""Friction that turns with the slip, in space."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.balls import precision
+from core.multibody.language.reading import scene_from
+from core.multibody.phases.phases import motion_in_phases
+from core.multibody.phases.turning_slip import TurningSlip
+
+
+def test_a_ball_begins_to_slide_from_a_state_with_an_error() -> None:
+    """An impact ends its slip, and a spring draws it on, faster than it can roll: what rounding leaves is no slip."""
+    ball = {
+        "mass": 1,
+        "moments": ["0.004", "0.004", "0.004"],
+        "radius": "0.1",
+        "at": [5, 0, "0.4"],
+        "velocity": [-2, 0, 0],
+        "angular_velocity": [0, 0, 3],
+    }
+    floor = {"at": [5, 0, 0], "normal": [0, 0, 1]}
+    scene = {
+        "gravity": [0, 0, -10],
+        "bodies": {"ball": ball, "other": {"mass": 1, "at": [10, 0, 0]}},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "ball", "on": floor, "friction": "0.3"},
+            {"kind": "spring", "a": "ball", "b": "other", "stiffness": 5, "rest_length": 4},
+            {"kind": "spinning-frame", "rate": 1},
+        ],
+    }
+    motion = motion_in_phases(scene_from(scene), 0.2398)
+    assert [event.kind for event in motion.events] == ["touch"]
+    phase = motion.phases[-1]
+    assert phase.turning
+    (row,) = (row for row in phase.tables[0].table.rows if row.slide is not None)
+    with precision(256):
+        assert all(abs(x).upper() < 1e-60 for x in phase.tables[0].table.slip_of(row))
+    ((_, turning),) = phase.models[0].whole.parts
+    assert isinstance(turning, TurningSlip)
+    # About a time within a step the motion is the same polynomial.
+    late = 2e-5
+    about, rest = turning.about("fine", late)
+    assert rest > 0.0
+    for series, own in zip(about.places, turning.run("fine", late).steps[0].places, strict=True):
+        there = sum(float(x) * late**k for k, x in enumerate(own))
+        assert float(series[0]) == pytest.approx(there, rel=1e-14, abs=1e-14)
