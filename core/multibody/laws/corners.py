@@ -8,7 +8,7 @@ import numpy as np
 
 from core.arrays import Floats, Integers
 from core.compiled import kernel
-from core.double_double import Pair, dd_mul, dd_mul_d
+from core.double_double import dd_mul, dd_mul_d
 from core.multibody.algebra.bernstein import (
     FALLING,
     MOST_SEGMENTS,
@@ -16,6 +16,8 @@ from core.multibody.algebra.bernstein import (
     POSITIVE,
     RISING,
     decided,
+    horner,
+    slope_at,
     zero_between,
 )
 from core.multibody.laws.kernel import AT_ZERO, LENGTH, MULTIPLY, POWER, ROOT, PackedLaws, leading_power
@@ -98,16 +100,6 @@ def _first_change(values: Floats, part: int, sign: float, h: float) -> float:
 
 
 @kernel()
-def _value_and_rate(values: Floats, part: int, time: float) -> Pair:
-    """Return a series and its derivative at a time, in doubles."""
-    value, rate = 0.0, 0.0
-    for k in range(values.shape[1] - 1, -1, -1):
-        rate = rate * time + value
-        value = value * time + values[part, k, 0]
-    return value, rate
-
-
-@kernel()
 def _side(values: Floats, part: int, leading: int, way: float) -> float:
     """Return the sign that a series takes after its start, where powers below `leading` are rounding."""
     for k in range(leading, values.shape[1]):
@@ -128,7 +120,8 @@ def _first_return(values: Floats, operation: Integers, h: float, leading: int) -
         for found in times[: _changes(values, part, sign, h, times)]:
             square, change = 0.0, 0.0
             for other in operation[1:4]:
-                value, rate = _value_and_rate(values, other, found)
+                # Beside another zero it rises so little that doubles do not tell it from its rounding.
+                value, rate = horner(values[other], found, 0.0)[0], slope_at(values[other], found)
                 square, change = square + value**2, change + rate**2
             if abs(found) < abs(best) and square <= AT_ZERO**2 * change:
                 best = found

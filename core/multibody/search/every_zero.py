@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from core.multibody.algebra.bernstein import FALLING, OPEN, RISING, UNDECIDED, zero_between
+from core.multibody.algebra.bernstein import FALLING, OPEN, POSITIVE, RISING, UNDECIDED, zero_between
 from core.multibody.search.bands import Quantity
 from core.multibody.search.batch import segments
 from core.multibody.search.followed import Followed, Found, Interval, WatchedSign
@@ -39,6 +39,7 @@ class EveryZero:
     ) -> None:
         self._motion = Followed(motions, quantities, [True] * len(quantities), way, coarse, every=True)
         self._signs = [0] * len(quantities)
+        self._last: list[Found | None] = [None] * len(quantities)
         self.starts: list[float] = []
         self._until = 0.0
 
@@ -93,12 +94,15 @@ class EveryZero:
                 # What is undecided from the start on leaves zero there.
                 near = self._within(watch, watch.since, here) if before else None
                 watch.since = None
+            if near is not None and before == (1 if sign in (POSITIVE, FALLING) else -1) and self._is_last(near):
+                # The zero at the end of a piece is undecided at the start of the next.
+                near = None
             if sign not in (FALLING, RISING):
                 if near is None and before and before != sign:
                     # The zero lies between two pieces that end and begin there.
                     near = self._within(watch, here, here)
                 if near is not None:
-                    yield near
+                    yield self._taken(near)
                 self._signs[watch.index] = sign
             else:
                 after = -1 if sign == FALLING else 1
@@ -111,13 +115,23 @@ class EveryZero:
                 zero = self._motion.at(one.start, length, watch, share, tail)
                 # One zero at the end of a piece may be undecided before it and certain after, where signs allow it.
                 if near is not None and (before == after or abs(zero.time - near.time) > 2.0 * near.width):
-                    yield near
+                    yield self._taken(near)
                     before = 0
                 # What is not above zero before it falls has done so at the end of the piece before.
                 if before != after or near is not None:
-                    yield zero
+                    yield self._taken(zero)
                 self._signs[watch.index] = after
             start = end
+
+    def _taken(self, zero: Found) -> Found:
+        """Return a zero, which is the last one of its quantity."""
+        self._last[zero.index] = zero
+        return zero
+
+    def _is_last(self, zero: Found) -> bool:
+        """Return whether a zero cannot be told from the last one of its quantity."""
+        last = self._last[zero.index]
+        return last is not None and abs(zero.time - last.time) <= 2.0 * zero.width + last.width
 
     def _within(self, watch: WatchedSign, since: float, until: float) -> Found:
         """Return a zero that lies between two times, if there is one."""

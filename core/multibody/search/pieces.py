@@ -145,9 +145,7 @@ class Pieces:
             for k in range(COEFFICIENTS):
                 values_of_laws(laws, each, len(curves), k, 1.0, space)
             values[p], sizes[p] = space[laws.push_at[0, 1]], np.abs(space[..., 0]).max(axis=0)
-        sizes = np.maximum(sizes, largest)
-        # A power is known no better than later ones.
-        return Curve(values, np.maximum.accumulate(sizes[:, ::-1], axis=1)[:, ::-1])
+        return Curve(values, np.maximum(sizes, largest))
 
     def of_input(self, given: Input) -> Curve:
         """Return what a name of a formula stands for."""
