@@ -1,5 +1,6 @@
 // What happens in a scene, in one or two sentences; every number is from the answer.
 import { written } from "./dom.js";
+import { faceName } from "./scene_parts.js";
 import { norm } from "./vectors.js";
 
 const EVENTS = {
@@ -52,17 +53,47 @@ function modesInWords(modes, names) {
 }
 
 /** One part that no other acts on. */
-function partInWords(part, answer, names) {
+function partInWords(part, answer, names, hangs) {
   const many = names.length > 1;
   if (part.name === "rest") return `${sentence(subject(names))} stay${many ? "" : "s"} at rest.`;
   if (part.name === "constant acceleration") return constant(answer, names);
   if (part.modes?.length) return modesInWords(part.modes, names);
-  if (part.degrees_of_freedom === 0) return `${sentence(subject(names))} ${many ? "are" : "is"} driven: nothing is free.`;
-  if (part.period) return `${sentence(subject(names))} swing${many ? "" : "s"} with a period of ${seconds(part.period)}${part.precession ? ", and goes round meanwhile" : ""}.`;
-  if (part.name === "steady precession") return `${sentence(subject(names))} precess${many ? "" : "es"} steadily.`;
+  if (part.name === "steady precession") return `${sentence(subject(names))} precess${many ? "" : "es"} steadily${part.period ? `, once in ${seconds(part.period)}` : ""}.`;
   if (part.name === "steady spin") return `${sentence(subject(names))} spin${many ? "" : "s"} steadily.`;
+  if (part.degrees_of_freedom === 0) return `${sentence(subject(names))} move${many ? "" : "s"} as driven: no degree of freedom is left.`;
+  if (part.period && part.precession) return `${sentence(subject(names))} swing${many ? "" : "s"} with a period of ${seconds(part.period)}, and go${many ? "" : "es"} round meanwhile.`;
+  if (part.period) return `${sentence(subject(names))} ${hangs ? `swing${many ? "" : "s"} with a period of` : `repeat${many ? "" : "s"} the motion every`} ${seconds(part.period)}.`;
   if (part.name === "free rotation") return `${sentence(subject(names))} tumble${many ? "" : "s"} freely.`;
   return `${sentence(subject(names))} move${many ? "" : "s"} in ${part.degrees_of_freedom} degree${part.degrees_of_freedom === 1 ? "" : "s"} of freedom.`;
+}
+
+/** Whether a body hangs from the ground by a pin, rod, string or spring. */
+const hanging = (names, model) => model.connections.some(({ kind, a, b, through }) => {
+  const ends = through ? [through[0], through.at(-1)] : [a, b];
+  return ["pin", "rod", "string", "ball-joint"].includes(kind) && ends.some((e) => e && typeof e !== "string") && ends.some((e) => typeof e === "string" && names.includes(e.split(".")[0]));
+});
+
+const ON_FACE = { touch: "touches", "lift-off": "leaves", slip: "begins to slip on", stick: "sticks to", roll: "rolls without slipping on", settle: "has come to rest on" };
+const OF_TWO = { touch: "touch", "lift-off": "part", slip: "begin to slip on one another", stick: "stick together", roll: "roll on one another without slipping" };
+
+/** An event with the bodies that it happens to, where it is one of a contact. */
+function eventInWords(event, model) {
+  const c = model.connections.find(({ label }) => label === event.name);
+  if (c?.on && typeof c.place === "string" && ON_FACE[event.kind]) {
+    const below = typeof c.on.at === "string" ? c.on.at.split(".")[0] : `the ${faceName(c.on)}`;
+    return `${sentence(c.place.split(".")[0])} ${ON_FACE[event.kind]} ${below}`;
+  }
+  if (c?.kind === "contact" && typeof c.b === "string" && OF_TWO[event.kind]) return `${sentence(c.a.split(".")[0])} and ${c.b.split(".")[0]} ${OF_TWO[event.kind]}`;
+  return sentence(sayEvent(event));
+}
+
+/** A body that rests on two corners at the start, of which one leaves at once. */
+function tipsAtOnce(answer, model) {
+  const states = answer.phases?.[0]?.states ?? {}, opened = Object.keys(states).find((name) => {
+    const c = model.connections.find(({ label }) => label === name);
+    return states[name] === "open" && c?.on && typeof c.place === "string" && !model.space && c.on.radius === undefined && Math.abs(model.startGap(c)) < 1e-9 * model.size();
+  });
+  return opened ? tipping({ kind: "lift-off", name: opened, time: 0 }, model) : null;
 }
 
 /** A body that stands on two contacts and leaves one tips about the other. */
@@ -86,12 +117,15 @@ export function headline(answer, model, stop) {
   if (answer.problem) return `${sentence(answer.problem.explanation ?? "What happens is not determined")}.`.replace(/\.\.$/, ".");
   const parts = answer.model.apart?.length > 1 ? answer.model.apart.map((part) => [part, bodiesOf(part, names)]).filter(([, own]) => own.length) : [[{ ...answer.model, period: answer.period, modes: answer.model.apart?.[0]?.modes ?? [], precession: answer.model.apart?.[0]?.precession }, names]];
   const moving = parts.filter(([part]) => part.name !== "rest");
-  const motion = (moving.length ? moving : parts).slice(0, 2).map(([part, own]) => partInWords(part, answer, own)).join(" ");
+  const sentences = (moving.length ? moving : parts).slice(0, 2).map(([part, own]) => partInWords(part, answer, own, hanging(own, model)));
   const first = events.find((e) => MENTIONED.has(e.kind));
-  const words = first ? tipping(first, model) ?? `${sentence(sayEvent(first))} ${first.time > 0 ? `after ${seconds(first.time)}` : "at once"}.` : "";
+  const tips = tipsAtOnce(answer, model);
+  const words = tips ?? (first ? tipping(first, model) ?? `${eventInWords(first, model)} ${first.time > 0 ? `after ${seconds(first.time)}` : "at once"}.` : "");
   model.seek(now);
   const last = answer.ended && answer.ended !== "horizon" ? events.at(-1) : null;
+  // What happens says more than how many ways there are to move.
+  const motions = [...new Set(sentences)].filter((said) => !words || !/degrees? of freedom\.$/.test(said)).join(" ");
   const end = last && last !== first ? ` The motion ends at ${seconds(last.time)}: ${sayEvent(last)}.` : "";
   const more = events.length > 1 && !end ? ` ${events.length} events in ${seconds(stop)}.` : "";
-  return [motion, words].filter(Boolean).join(" ") + end + more;
+  return [motions, words].filter(Boolean).join(" ") + end + more;
 }

@@ -31,6 +31,7 @@ function ofShape(shape, n) {
 export function outlineOf(body, n) {
   if (body.shape?.kind) return ofShape(body.shape, n);
   if (body.radius) return { radius: body.radius };
+  if (body.plank !== null && body.plank !== undefined && !Object.keys(body.places).length) return plank(body);
   const places = Object.values(body.places).filter((p) => norm(p) > 0);
   const size = Math.max(0, ...places.map(norm));
   if (places.length >= 3) {
@@ -45,6 +46,12 @@ export function outlineOf(body, n) {
   }
   if (places.length === 1) return { bar: [[0, 0], places[0]] };
   return places.length > 2 ? { bar: ends(places) } : null;
+}
+
+/** A homogeneous rod with the moment of inertia of the body, along its face. */
+function plank({ mass, inertia, plank: slope }) {
+  const half = Math.sqrt((12 * inertia) / mass) / 2, end = [half * Math.cos(slope), half * Math.sin(slope)];
+  return { bar: [end.map((x) => -x), end] };
 }
 
 /** The two points that are farthest apart. */

@@ -102,6 +102,9 @@ function arrows(d, list, largest, ink, unit) {
   }
 }
 
+const SMALLEST = 6;
+/** Pixels of the radius of a disc at least: smaller ones would not be seen. */
+
 /** How large a point of a mass is drawn (pixels). */
 const pointSize = (model, body) => (body.mass ? 5 + 6 * Math.cbrt(body.mass / model.heaviest()) : 3.5);
 
@@ -109,10 +112,12 @@ function drawBody(d, model, body) {
   const { at, angle } = body, out = (p) => add(at, turned(angle, p));
   const outline = outlineOf(body, model.numbers), places = Object.values(body.places).map(out);
   const lift = model.liftOf(body);
+  if (lift?.round) return d.dot(add(at, lift.normal, pointSize(model, body) * d.px), pointSize(model, body), "deep");
   if (lift) return block(d, at, lift);
   if (outline?.radius) {
-    d.disc(at, outline.radius, "face", "ink", 2, { fillAlpha: 0.5 });
-    d.line([at, out([outline.radius, 0])], "ink", 2);
+    const radius = Math.max(outline.radius, SMALLEST * d.px);
+    d.disc(at, radius, "face", "ink", 2, { fillAlpha: 0.5 });
+    d.line([at, out([radius, 0])], "ink", 2);
     for (const p of places) d.line([at, p], "ink", 1.5);
   } else if (outline?.corners) {
     d.outline(outline.corners.map(out), "face", "ink", 2, { fillAlpha: 0.6 });
@@ -130,8 +135,8 @@ function drawBody(d, model, body) {
 }
 
 /** A point that slides on a face is a block that stands on it; one that carries it, below. */
-function block(d, at, { along, normal, level }) {
-  const s = 26 * d.px, foot = add(at, normal, level * s);
+function block(d, at, { along, normal, level, middle }) {
+  const s = 26 * d.px, foot = add(at, normal, (middle ? -0.5 : level) * s);
   const corner = (x, y) => add(add(foot, along, x * s), normal, y * s);
   const half = 0.75 + 0.35 * (level === 0 ? 1 : 0);
   d.outline([corner(-half, 0), corner(half, 0), corner(half, 1), corner(-half, 1)], "face", "ink", 1.5, { fillAlpha: 0.75 });

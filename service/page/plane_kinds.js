@@ -42,7 +42,7 @@ export function drawFace(d, model, face, c) {
   d.line(reach(middle, face.along, length), "soft", 2);
   for (let k = first; k <= first + (2 * length) / step; k++) {
     const p = add(face.point, face.along, k * step);
-    d.line([p, add(p, down)], "line", 1);
+    d.line([p, add(p, down)], "soft", 0.8);
   }
 }
 
@@ -136,7 +136,7 @@ function gears(d, model, c) {
 }
 
 function contactMark(d, model, c) {
-  if (c.on || c.place) d.dot(model.touching(c).at, 3, "soft", null);
+  d.dot(model.touching(c).at, 3, "soft", null);
 }
 
 /** What is seen above the bodies: pins, sliders, fixed ends. */
@@ -144,7 +144,8 @@ export function drawJoint(d, model, c) {
   const at = (reference) => model.place(reference).point, fixed = (reference) => Array.isArray(reference) || (reference && typeof reference === "object");
   if (c.kind === "pin" || c.kind === "weld") {
     const point = at(c.a), s = 13 * d.px;
-    if (fixed(c.b ?? [0, 0])) d.outline([point, add(point, [-s, -1.5 * s]), add(point, [s, -1.5 * s])], "panel", "soft", 2);
+    const small = model.place(c.a).body?.radius && model.place(c.a).body.radius < 2 * s;
+    if (fixed(c.b ?? [0, 0]) && !small) d.outline([point, add(point, [-s, -1.5 * s]), add(point, [s, -1.5 * s])], "panel", "soft", 2);
     return c.kind === "weld" ? d.outline([[-1, -1], [1, -1], [1, 1], [-1, 1]].map((k) => add(point, k, 4 * d.px)), "ink", null) : d.dot(point, 4.5, "panel", "ink", 2);
   }
   if (c.kind === "slider") {

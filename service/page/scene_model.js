@@ -28,10 +28,21 @@ export class SceneModel {
       name, start, moments, shape, mass: n.number(body.mass ?? 0) || 0,
       radius: body.radius !== undefined ? n.number(body.radius) : shape?.radius !== undefined && shape.kind !== "capsule" ? n.number(shape.radius) : null,
       rigid: shape !== null || body.inertia !== undefined || body.moments !== undefined || body.tensor !== undefined || body.body !== undefined,
+      inertia: n.number(body.inertia ?? 0) || 0, plank: this.plankSlope(name, body),
       angle0: n.number(body.angle ?? 0) || 0,
       axes: Array.isArray(body.axes) ? body.axes.map((row) => n.vector(row)) : null,
       places: Object.fromEntries(Object.entries(body.places || {}).map(([place, at]) => [place, n.vector(at)])),
     };
+  }
+
+  /** The slope of a straight face through the centre of a body without an outline, which then is a plank or a rod; null if there is none. */
+  plankSlope(name, body) {
+    const slopeOf = (slope) => this.numbers.number(slope ?? 0) || 0, connections = this.description.connections || [];
+    const c = connections.find(({ on }) => on && on.at === name && ["radius", "curvature", "curve", "normal", "direction"].every((k) => on[k] === undefined));
+    if (!c || !(this.numbers.number(body.inertia ?? 0) > 0) || !(this.numbers.number(body.mass) > 0)) return null;
+    const rail = connections.find(({ kind, a }) => kind === "slider" && a === name);
+    // What slides on a rail of another slope is a wedge.
+    return rail && Math.abs(Math.sin(slopeOf(rail.slope) - slopeOf(c.on.slope))) > 1e-9 ? null : slopeOf(c.on.slope);
   }
 
   heaviest() {
@@ -42,14 +53,31 @@ export class SceneModel {
     return outlineOf(body, this.numbers) !== null;
   }
 
-  /** How a point stands on a straight face, as a block: `{along, normal, level}`, level being how many lie below; null if it does not. */
+  /**
+   * How a point stands on a straight face: `{along, normal, level, round, middle}`, level being how many blocks lie below. What comes
+   * through the air is `round`; what is guided, as in a mechanism, has its `middle` on the face. Null if it stands on none.
+   */
   liftOf(body) {
     if (this.space || this.hasOutline(body) || body.rigid || !body.mass) return null;
     const c = this.standing(body.name);
     if (!c) return null;
     const { along, normal, body: below } = this.face(c.on);
-    const under = below && this.liftOf(below);
-    return { along, normal, level: under ? under.level + 1 : 0 };
+    const under = below && this.liftOf(below), linked = this.connections.some(({ kind, a, b }) => kind === "rod" && (a === body.name || b === body.name));
+    return { along, normal, level: under ? under.level + 1 : 0, round: c.kind === "contact" && this.startGap(c) > 1e-6 * this.size(), middle: c.kind === "track" && linked };
+  }
+
+  /** How far a place is from a straight face at the start. */
+  startGap(c) {
+    const { now } = this;
+    this.seek(0);
+    const { point, normal } = this.face(c.on), gap = dot(sub(this.place(c.place).point, point), normal);
+    this.seek(now);
+    return gap;
+  }
+
+  size() {
+    this.sizeOnce ??= this.bounds().size;
+    return this.sizeOnce;
   }
 
   /** The connection by which a point stands on a straight face. */
@@ -259,7 +287,8 @@ export class SceneModel {
     const points = [];
     for (const body of this.bodies) {
       const solid = body.moments && body.mass ? Math.sqrt((3 * Math.max(...body.moments)) / body.mass) : 0;
-      const reach = Math.max(body.radius || 0, solid, ...Object.values(body.places).map((p) => norm(p)), 0);
+      const outline = this.space ? null : outlineOf(body, this.numbers);
+      const reach = Math.max(body.radius || 0, solid, ...(outline?.corners ?? outline?.bar ?? []).map(norm), ...Object.values(body.places).map((p) => norm(p)), 0);
       const path = this.column(`${body.name}.position`) || [body.start];
       for (let i = 0; i < path.length; i += Math.max(1, Math.floor(path.length / 100))) {
         points.push(path[i].map((x) => x - reach), path[i].map((x) => x + reach));

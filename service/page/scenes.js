@@ -342,17 +342,19 @@ $("beside").onchange = () => {
   else compareByMethod();
 };
 
-/** Ask for the same motion by the method that is chosen, in steps that one sees. */
-async function compareByMethod() {
+/** Ask for the same motion by the method that is chosen, in steps that one sees; one that leaves all bounds is shown until then. */
+async function compareByMethod(stop = player.stop) {
   const kind = $("beside").value;
   if (kind === "" || kind === "held" || !answer?.shown || isNamed(state.scene)) return;
-  const method = { kind, step: Number((player.stop / METHOD_STEPS).toPrecision(2)) };
+  const method = { kind, step: Number((player.stop / METHOD_STEPS).toPrecision(2)) }, words = $("beside").selectedOptions[0].textContent;
   try {
-    const { answer: other } = await ask("/v1/scenes", doc.scene.with("/times", { start: 0, stop: player.stop, count: 801 }).with("/outputs", ["trajectory"]).with("/method", method).text);
-    curves.compare({ trajectory: other.trajectory, words: `${$("beside").selectedOptions[0].textContent} in steps of ${written(method.step, 2)} s` });
+    const { answer: other } = await ask("/v1/scenes", doc.scene.with("/times", { start: 0, stop, count: 801 }).with("/outputs", ["trajectory"]).with("/method", method).text);
+    curves.compare({ trajectory: other.trajectory, words: `${words} in steps of ${written(method.step, 2)} s` });
   } catch (error) {
+    const left = /before t = ([\d.]+)/.exec(error.message);
+    if (left && stop === player.stop) return compareByMethod(0.8 * Number(left[1]));
     curves.compare(null);
-    say(`${$("beside").selectedOptions[0].textContent}: ${error.errors?.[0]?.detail ?? error.message}.`);
+    say(`${words}: ${error.errors?.[0]?.detail ?? error.message}.`);
   }
 }
 

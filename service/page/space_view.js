@@ -58,9 +58,11 @@ export class SpaceView extends View {
     if (body.radius) group.add(...this.ball(body.radius * this.factor));
     else if (body.moments && body.mass) group.add(this.solid(body));
     else group.add(new Mesh(new SphereGeometry(0.05 * Math.cbrt((body.mass || heaviest) / heaviest), 20, 14), this.paints.deep));
+    const top = body.moments && this.isTop(body, symmetryAxis(body.moments));
     for (const place of Object.values(body.places)) {
-      const stick = this.stick("soft", 0.014);
-      stretch(stick, new Vector3(), new Vector3(...place).multiplyScalar(this.factor));
+      const stick = this.stick(top ? "ink" : "soft", top ? 0.02 : 0.014);
+      // The stick of a top goes through its disc.
+      stretch(stick, new Vector3(...place).multiplyScalar(top ? -0.6 * this.factor : 0), new Vector3(...place).multiplyScalar(this.factor));
       group.add(stick);
     }
     this.add(group);
@@ -81,7 +83,8 @@ export class SpaceView extends View {
   /** A cylinder or cuboid with the moments of the body. */
   solid(body) {
     const axis = symmetryAxis(body.moments), [along, across] = [body.moments[axis], body.moments[(axis + 1) % 3]];
-    const height = (12 * (across - along / 2)) / body.mass, paints = [this.paints.face, this.paints.faceTwo, this.paints.faceThree];
+    const flat = this.isTop(body, axis);
+    const height = flat ? (0.3 ** 2 * 2 * along) / body.mass : (12 * (across - along / 2)) / body.mass, paints = [this.paints.face, this.paints.faceTwo, this.paints.faceThree];
     if (across === body.moments[(axis + 2) % 3] && height > -1e-12) {
       const radius = Math.sqrt((2 * along) / body.mass) * this.factor;
       const mesh = new Mesh(new CylinderGeometry(radius, radius, Math.max(0.02, Math.sqrt(Math.max(0, height)) * this.factor), 40), paints);
@@ -93,6 +96,12 @@ export class SpaceView extends View {
     const sizes = edges.map((e) => (e / Math.sqrt(body.mass)) * this.factor);
     const { face, faceTwo, faceThree } = this.paints;
     return new Mesh(new BoxGeometry(...sizes), [face, face, faceTwo, faceTwo, faceThree, faceThree]);
+  }
+
+  /** Whether a body is a top: symmetric, with its places on its axis. It is drawn as a disc on a stick. */
+  isTop(body, axis) {
+    const places = Object.values(body.places);
+    return places.length > 0 && places.every((p) => p.every((x, k) => k === axis || Math.abs(x) < 1e-12) && norm(p) > 0);
   }
 
   stick(name, width) {
@@ -115,6 +124,11 @@ export class SpaceView extends View {
       this.parts.push(() => ball.position.copy(at(c.a)));
     }
     if (c.on) this.facePart(c);
+    for (const end of [c.a, c.b, ...(c.through ?? [])]) {
+      if (!Array.isArray(end)) continue;
+      const ball = this.add(new Mesh(new SphereGeometry(0.025, 16, 12), this.paints.soft));
+      this.parts.push(() => ball.position.copy(at(end)));
+    }
   }
 
   facePart(c) {
@@ -127,8 +141,10 @@ export class SpaceView extends View {
       const ball = this.add(new Mesh(new SphereGeometry(Math.abs(face.radius) * this.factor, 40, 28), this.glass));
       ball.position.set(...point);
     } else if (face.plane) {
-      const disc = this.add(new Mesh(new CylinderGeometry(1, 1, 0.004, 60), this.glass));
-      disc.position.set(...point);
+      // As large as the scene, about the foot of its middle.
+      const away = face.normal.reduce((sum, n, k) => sum + n * point[k], 0);
+      const disc = this.add(new Mesh(new CylinderGeometry(1.25, 1.25, 0.004, 60), this.glass));
+      disc.position.set(...face.normal.map((n) => n * away));
       disc.quaternion.setFromUnitVectors(UP, new Vector3(...face.normal));
     } else {
       const stick = this.add(this.stick("soft", 0.008)), along = new Vector3(...face.along);

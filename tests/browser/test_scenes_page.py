@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 from urllib.request import urlopen
 
 import pytest
@@ -166,3 +167,53 @@ def test_an_event_is_marked_and_said(opened):
     settle(page)
     assert page.locator(".marks span").count() == page.locator("#events li").count() > 0
     assert "cord goes slack" in page.locator("#events").inner_text()
+
+
+def test_the_gallery_finds_scenes_by_their_words(opened):
+    page = opened("/scenes")
+    page.locator("#browse").click()
+    page.locator("#gallery-search").fill("tips edge")
+    assert page.locator("#gallery .card:visible strong").all_inner_texts() == ["Block tips over"]
+    page.locator("#gallery .card:visible").click()
+    settle(page)
+    assert page.locator("#scene").input_value() == "block-tips-over"
+    assert "tips about its right edge" in page.locator("#summary").inner_text()
+
+
+def test_graphs_of_one_quantity_against_another_and_as_a_table(opened):
+    # What Euler's method loses leaves the range of doubles, and is shown until then.
+    page = opened("/scenes#scene=simple-pendulum", expected=REFUSED)
+    page.locator("#curves").select_option("bob x")
+    page.locator("#against").select_option("bob y")
+    assert page.locator("#plane-chart canvas").is_visible()
+    assert page.locator("#chart").is_hidden()
+    page.locator("#table-shown").check()
+    assert page.locator("#table thead th").all_inner_texts() == ["time (s)", "bob x (m)"]
+    page.locator("#against").select_option("")
+    page.locator("#beside").select_option("explicit-euler")
+    page.locator("#chart[aria-label*=Euler]").wait_for()
+
+
+def test_what_is_taken_away_is_what_is_shown(opened):
+    page = opened("/scenes#scene=simple-pendulum")
+    contents = {}
+    for name in ("json", "svg", "csv", "png"):
+        with page.expect_download() as waiting:
+            page.locator(f"#take-{name}").click()
+        contents[name] = Path(waiting.value.path()).read_bytes()
+    assert json.loads(contents["json"]) == json.loads(page.locator("#editor").input_value())
+    assert contents["svg"].startswith(b"<svg")
+    assert b"NaN" not in contents["svg"]
+    assert contents["png"].startswith(b"\x89PNG")
+    head, first, *rest = contents["csv"].decode().split("\r\n")
+    assert head.startswith("time (s),bob.position.x (m),bob.position.y (m)")
+    assert len(rest) == 800
+    assert len(first.split(",")) == len(head.split(","))
+
+
+def test_an_embedded_page_is_the_picture_alone(opened):
+    page = opened("/scenes?embed=1#scene=simple-pendulum")
+    assert page.locator("#plane-canvas").is_visible()
+    assert page.locator("#player").is_visible()
+    for name in ("nav", "#palette", "#editor", "#inspector"):
+        assert page.locator(name).is_hidden()
