@@ -29,7 +29,7 @@ T_HANDLE = {"kind": "principal-moments", "moments": [795.792181070, 713.50925925
 
 
 def post(server: Server, body: bytes, headers: dict[str, str] = JSON) -> tuple[int, dict[str, str], bytes]:
-    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30)
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=120)
     try:
         connection.request("POST", PATH, body, headers)
         response = connection.getresponse()
@@ -40,7 +40,7 @@ def post(server: Server, body: bytes, headers: dict[str, str] = JSON) -> tuple[i
 
 def raw(server: Server, *pieces: bytes) -> bytes:
     """Send bytes and return all that comes back."""
-    with socket.create_connection(("127.0.0.1", server.port), timeout=10) as connection:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=60) as connection:
         for piece in pieces:
             connection.sendall(piece)
         received = b""
@@ -144,7 +144,7 @@ GOOD = b"POST /v1/rotation/trajectory HTTP/1.1\r\nhost: x\r\ncontent-type: appli
     ids=lambda value: value[-30:].decode("latin-1"),
 )
 def test_hostile_bytes_never_hurt(server: Server, request_bytes: bytes) -> None:
-    with socket.create_connection(("127.0.0.1", server.port), timeout=10) as connection:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=60) as connection:
         connection.sendall(request_bytes)
         connection.shutdown(socket.SHUT_WR)
         received = b""
@@ -196,7 +196,7 @@ def test_health_is_answered_while_every_core_computes(server: Server) -> None:
 def test_a_client_that_leaves_does_no_harm(server: Server) -> None:
     body = json.dumps(hostile.QUESTION | {"times": {"start": 0, "stop": 1, "count": 1_000_000}}).encode()
     for _ in range(3):
-        with socket.create_connection(("127.0.0.1", server.port), timeout=10) as connection:
+        with socket.create_connection(("127.0.0.1", server.port), timeout=60) as connection:
             connection.sendall(GOOD + b"content-length: %d\r\n\r\n" % len(body) + body)
             connection.recv(1000)
     assert post(server, hostile.text())[0] == 200

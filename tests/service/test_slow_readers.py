@@ -24,7 +24,7 @@ LARGE = json.dumps(
 def asked(server: Server) -> tuple[int, dict[str, Any]]:
     request = urllib.request.Request(server.url + PATH, LARGE, {"content-type": "application/json"})
     try:
-        with urllib.request.urlopen(request, timeout=30) as response:
+        with urllib.request.urlopen(request, timeout=120) as response:
             return response.status, json.load(response)
     except urllib.error.HTTPError as refusal:
         with refusal:

@@ -301,7 +301,7 @@ async def test_unfinished_bodies_are_bounded_together() -> None:
             writer.write(HEAD + b"content-length: 500000\r\n\r\n" + b" " * 400_000)
             waiting.append((reader, writer))
         finished = [asyncio.create_task(reader.read()) for reader, _ in waiting]
-        (first, *_), _ = await asyncio.wait(finished, timeout=20, return_when=asyncio.FIRST_COMPLETED)
+        (first, *_), _ = await asyncio.wait(finished, timeout=120, return_when=asyncio.FIRST_COMPLETED)
         assert statuses(first.result()) == [429]
         assert sum(one.done() for one in finished) == 1
         for _, writer in waiting:
