@@ -24,6 +24,7 @@ from core.digits.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, ex
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable, Path
 from core.quantities import Quantity, TaggedBy
 from core.rows import Rows
+from service.requests.annotations import ANNOTATED, UNION
 from service.schemas import ObjectOrArray, Request
 
 DigitCount = Annotated[
@@ -97,12 +98,12 @@ def in_numerals(hint: Any) -> Any:
         return tuple.__class_getitem__(tuple(map(in_numerals, parts)))
     if origin in (Union, UnionType):
         many = [mark for part in parts for mark in getattr(part, "__metadata__", ()) if isinstance(mark, Rows)]
-        return _annotated(Any, OneOrMany(many[0])) if many else Union.__getitem__(tuple(map(in_numerals, parts)))
+        return _annotated(Any, OneOrMany(many[0])) if many else UNION[tuple(map(in_numerals, parts))]
     return decimal_model_for(hint) if isinstance(hint, type) and is_dataclass(hint) else hint
 
 
 def _annotated(bare: Any, mark: Any) -> Any:
-    return Annotated.__class_getitem__((bare, mark))  # type: ignore[attr-defined]
+    return ANNOTATED[bare, mark]
 
 
 def fields_in_numerals(cls: Any) -> dict[str, Any]:

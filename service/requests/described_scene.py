@@ -30,6 +30,7 @@ from core.multibody.trajectory.occurrences import MOST_FOUND, ExtremesOf, When
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
+from service.requests.annotations import ANNOTATED
 from service.requests.figures import SensitivitiesQuestion
 from service.schemas import ROUND, Request, Rounding, Times
 
@@ -80,7 +81,7 @@ def _form(hint: Any) -> Any:
 
 def _by_core(hint: Any) -> Any:
     """Return the type of a value that core checks; the document shows it."""
-    return Annotated.__class_getitem__((_form(hint), SkipValidation()))  # type: ignore[attr-defined, type-arg]
+    return ANNOTATED[_form(hint), SkipValidation()]  # type: ignore[type-arg]
 
 
 def _body_form() -> type[Request]:

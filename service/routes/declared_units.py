@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 from pydantic import BaseModel
 
 from core.errors import Path
+from service.requests.annotations import ANNOTATED
 
 Node = tuple[Any, str | None]
 """An annotation without its marks, and the unit that they, or those of what holds it, give to the numbers in it."""
@@ -101,9 +102,7 @@ def _fields(owner: Any) -> Mapping[str, Any]:
         return {}
     if issubclass(owner, BaseModel):
         return {
-            name: Annotated.__class_getitem__((field.annotation, *field.metadata))  # type: ignore[attr-defined]
-            if field.metadata
-            else field.annotation
+            name: ANNOTATED[field.annotation, *field.metadata] if field.metadata else field.annotation
             for name, field in owner.model_fields.items()
         }
     return get_type_hints(owner, include_extras=True) if is_dataclass(owner) or hasattr(owner, "_fields") else {}

@@ -16,11 +16,12 @@ from core.quantities import Unit
 from core.sensitivities.figure import figure_of
 from core.sensitivities.sensitivities import Inputs, sensitivities
 from core.systems.budget import Budget
+from service.requests.annotations import ANNOTATED
 from service.requests.figures import SensitivitiesQuestion
 from service.requests.request_reader import Limits, Reader
 from service.routes.assessments.route_source import RouteSource
 from service.routes.declared_units import has_field
-from service.routing import Answer, PostRoute
+from service.routing import Answer, PostRoute, never
 from service.schemas import Request, View
 
 OUTPUT, OTHER = "sensitivities", "other"
@@ -110,7 +111,8 @@ def with_sensitivities(route: PostRoute) -> PostRoute:
         question=_question_model(route.question),
         answer=_answer_model(route.answer),
         handle=handle,
-        small=lambda question: not _asked(question) and route.small(question),
+        # Where no question is small, the server process loads none of its kernels.
+        small=never if route.small is never else lambda question: not _asked(question) and route.small(question),
     )
 
 
@@ -127,9 +129,9 @@ def _question_model(question: Any) -> type[Request]:
     if own is not None:
         inner = get_args(get_args(own.annotation)[0])[0]
         # Built by calls, because a type made of what is only known here is no type to the checker.
-        other: Any = Annotated.__class_getitem__((inner, Tag(OTHER)))  # type: ignore[attr-defined]
+        other: Any = ANNOTATED[inner, Tag(OTHER)]
         derivatives: Any = Annotated[SensitivitiesOutput, Tag(OUTPUT)]
-        either: Any = Annotated.__class_getitem__((other | derivatives, Discriminator(_kind)))  # type: ignore[attr-defined]
+        either: Any = ANNOTATED[other | derivatives, Discriminator(_kind)]
         outputs = list.__class_getitem__(either)
         field = copy(own)
     made = create_model(

@@ -11,6 +11,7 @@ from core.errors import InvalidParameter
 from core.systems.budget import Budget
 from service.requests.request_reader import Limits, Reader
 from service.routes import questions
+from service.routing import never
 from tests.service.conftest import client_of, inline_service
 from tests.service.requests.test_npz_body import archive
 
@@ -108,3 +109,8 @@ def test_a_request_that_is_no_json_says_so() -> None:
     question = Reader[Any](route.question, Limits()).read(archive(document, times=np.array([1.0])), npz=True)
     with pytest.raises(InvalidParameter, match="request in JSON"):
         route.handle(question, Budget())
+
+
+def test_routes_that_have_no_small_question_are_known_as_such() -> None:
+    """The server process loads the kernels of the others alone: those of described scenes take 50 MB."""
+    assert {route.path for route in questions() if route.small is never} >= {"/v1/scenes", "/v1/work-precision"}
