@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -76,24 +78,44 @@ async def test_what_is_held_is_written_before_the_connection_closes(pair: tuple[
     assert written.parts == [b"refused"]
 
 
-async def test_a_closed_connection_of_which_nothing_more_is_taken_is_aborted(pair: tuple[Any, Written]) -> None:
-    transport, written = pair
+class Clock:
+    """Takes the place of a loop whose time goes on when the test says so."""
+
+    def __init__(self) -> None:
+        self.due: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
+        self.call_soon = asyncio.get_running_loop().call_soon
+
+    def call_later(self, delay: float, call: Callable[..., None], *arguments: Any) -> Any:
+        self.due.append((call, arguments))
+        return SimpleNamespace(cancel=self.due.clear)
+
+    def go_on(self) -> None:
+        due, self.due = self.due, []
+        for call, arguments in due:
+            call(*arguments)
+
+
+async def test_a_closed_connection_of_which_nothing_more_is_taken_is_aborted() -> None:
+    written, clock = Written(), Clock()
+    transport = OneWrite(written, clock, 0.02)  # type: ignore[arg-type]
     written.left = 100
     transport.close()
     for left in (90, 80, 70):
         written.left = left
-        await asyncio.sleep(0.025)
+        clock.go_on()
         assert not written.aborted
-    await asyncio.sleep(0.1)
+    clock.go_on()
     assert written.aborted
+    assert not clock.due
 
 
-async def test_a_connection_that_is_read_to_its_end_is_not_aborted(pair: tuple[Any, Written]) -> None:
-    transport, written = pair
+async def test_a_connection_that_is_read_to_its_end_is_not_aborted() -> None:
+    written, clock = Written(), Clock()
+    transport = OneWrite(written, clock, 0.02)  # type: ignore[arg-type]
     written.left = 100
     transport.expect_progress()
     written.left = 0
-    await asyncio.sleep(0.05)
+    clock.go_on()
     transport.close()
-    await asyncio.sleep(0.05)
+    clock.go_on()
     assert not written.aborted
