@@ -30,6 +30,8 @@ _MOST_AT_ONCE = 256
 """Zeros of which the quantity is evaluated at once at most."""
 _BESIDE = 2.0**-48
 """Share of the time of a jump by which its sides are before and after it: a few roundings."""
+_NEARLY_ZERO = 2.0**-20
+"""Share of the largest value below which a value may be one that vanishes, at a time that is not yet located."""
 _LEAST = 2.0**-1000
 """Time (s) below which no power of it is a double."""
 
@@ -142,22 +144,35 @@ class SearchAlong:
         for one in turns:
             # A jump has two sides.
             beside = _BESIDE * one.time if one.index else 0.0
-            candidates.extend((time, one) for time in dict.fromkeys((one.time - beside, one.time, one.time + beside)))
+            candidates.extend((side, one) for side in dict.fromkeys((-beside, 0.0, beside)))
         candidates.append((self.end, None))
-        times = np.array([time for time, _ in candidates])
+        times = np.array([side if one is None else one.time + side for side, one in candidates])
         column = self.sampler(np.clip(times, 0.0, self.end))
+        values, hits = column.values.copy(), dict[int, Hit]()
+
+        def locate(k: int) -> Hit | None:
+            side, one = candidates[k]
+            if one is not None and k not in hits:
+                # What is found is the zero of a series that is cut off.
+                hits[k] = self._located(quantities[one.index], one)
+                times[k] = float(hits[k].time) + side
+            return hits.get(k)
+
+        # A length that vanishes does so as a corner: its value is that at the time itself.
+        corners = np.flatnonzero(np.abs(values) <= _NEARLY_ZERO * np.max(np.abs(values)))
+        if any([locate(k) is not None for k in corners.tolist()]):
+            values[corners] = self.sampler(np.clip(times[corners], 0.0, self.end)).values
         found = []
         for sign in (-1.0, 1.0):
-            values = sign * column.values
             # The first of those that cannot be told apart from the largest: the quantity is monotonic in between.
-            alike = values >= np.max(values) - 2.0 * column.error
+            alike = sign * values >= np.max(sign * values) - 2.0 * column.error
             k = int(np.argmax(alike))
-            last = k + int(np.argmin(np.append(alike[k:], False))) - 1
-            error, turn = float(times[last] - times[k]), candidates[k][1]
-            if turn is not None:
-                error += self._located(quantities[turn.index], turn).error + abs(float(times[k]) - turn.time)
-                error += 2.0**-52 * turn.time
-            found.append(Extreme(float(column.values[k]), float(times[k]), error))
+            hit, last = locate(k), k + int(np.argmin(np.append(alike[k:], False))) - 1
+            time = float(np.clip(times[k], 0.0, self.end))
+            error = max(float(times[last]) - time, 0.0)
+            if hit is not None:
+                error += hit.error + abs(candidates[k][0]) + 2.0**-52 * time
+            found.append(Extreme(float(values[k]), time, error))
         return found[0], found[1]
 
     @property

@@ -14,7 +14,7 @@ from core.multibody.solve import solve_scene
 from core.multibody.trajectory.occurrences import ExtremesOf, When
 from core.systems.methods.explicit_euler import ExplicitEuler
 from tests.core.multibody.swings import Swing
-from tests.core.multibody.worked_examples import points, read
+from tests.core.multibody.worked_examples import column, points, read
 
 PENDULUM = read(points((1,), (2.5,), (2,)))
 SCENES = Path(__file__).parents[4] / "examples" / "scenes"
@@ -361,3 +361,25 @@ def test_places_of_extremes_of_parts_and_beside_impacts() -> None:
     assert found.least_places.keys() == {"ball"}
     assert found.least_places["ball"] == pytest.approx((1.0, 0.0), abs=found.place_errors["ball"] + 1e-15)
     assert found.largest_places["ball"] == (1.0, 0.8)
+
+
+def test_a_speed_that_vanishes_between_two_steps_is_zero_there() -> None:
+    """A body on a line that turns back: its velocity changes its sign, so that its least speed is zero."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "a": {"mass": 2, "at": [1, 0], "velocity": [1, 0]},
+            "b": {"mass": "1.04", "inertia": "0.13", "radius": "0.5", "at": [3, 0]},
+        },
+        "connections": [
+            {"kind": "track", "place": "a", "on": {"at": [1, 0]}},
+            {"kind": "force", "place": "a", "force": [-3, 0]},
+            {"kind": "rolling", "place": "b", "on": {"at": [3, "-0.5"]}},
+            {"kind": "spring", "a": "b", "b": "a", "stiffness": 10},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 1.0], (ExtremesOf("a.velocity.length"), "trajectory"))
+    (found,) = answer.extremes
+    assert found.least <= found.error < 1e-14
+    velocity = solve_scene(read(scene), [found.least_time], ("trajectory",))
+    assert abs(column(velocity, "a.velocity").values[0, 0]) < 1e-15
