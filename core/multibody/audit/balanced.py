@@ -26,7 +26,7 @@ class Accelerated:
     unsure : ndarray, shape (freedoms, n)
         How wrong the inertial terms may be.
     starts : bool
-        Whether the first sample is that of the start, for which stated errors do not enter.
+        Whether the first sample is that of the start, for which rounding takes the place of stated errors.
     """
 
     samples: Samples
@@ -74,12 +74,11 @@ def check_balance(
             return
         moments = moments.at(np.flatnonzero(~within.all(axis=0)))
         left, allowed = _left(ledger, description, freedoms, moments)
-        changes = _moved(description, moments)
+        if moments.starts:
+            moments = replace(moments, samples=moments.samples.given_first(description.extent))
+        allowed += _moved(description, moments)
     except Undefined:
         return
-    if moments.starts:
-        changes[:, 0] = 0.0
-    allowed += changes
     for k, worst in enumerate(np.argmax(left - allowed, axis=0).tolist()):
         where = " at the start" if moments.starts and k == 0 else ""
         time, body = moments.samples.times[k : k + 1], freedoms.body(worst)

@@ -18,6 +18,9 @@ Columns = Mapping[str, Column]
 POSITION, ATTITUDE, VELOCITY, SPIN = range(4)
 """Numbers of the stated errors of a body, of vectors of their length (m, rad, m/s, rad/s)."""
 
+EPSILON = 2.0**-52
+"""Distance of neighbouring doubles, relative to them: a place is rounded by half of it, the difference of two by it."""
+
 _DIAGONAL = 3.0**0.5
 """A vector is at most so many times as long as its largest component."""
 
@@ -92,6 +95,24 @@ class Samples:
     def spun(self, name: str) -> bool:
         """Return whether all that turns of a body is known."""
         return self.motion[name].spin is not None
+
+    def given_first(self, extent: float) -> Samples:
+        """Return the samples with the first as the description gives it: wrong by the rounding to doubles alone.
+
+        Parameters
+        ----------
+        extent : float
+            Largest coordinate of anything (m): directions are known as well as the differences of coordinates are.
+        """
+        errors = {}
+        for name, stated in self.errors.items():
+            errors[name] = stated.copy()
+            twist = self.motion[name]
+            spin = 0.0 if twist.spin is None else float(np.abs(twist.spin[0]).max())
+            sizes = {POSITION: extent, ATTITUDE: 1.0, VELOCITY: float(np.abs(twist.velocity[0]).max()), SPIN: spin}
+            for number, size in sizes.items():
+                errors[name][0, number] = EPSILON * size
+        return replace(self, errors=errors)
 
     def perturbed(self, bodies: Iterable[str], forces: Iterable[str] = ()) -> Samples:
         """Return the samples with one input after another changed by its stated error.

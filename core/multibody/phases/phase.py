@@ -47,6 +47,8 @@ class Phase:
         None for the last.
     bounces : Accumulation or None
         In place of the models, where infinitely many impacts are in the phase.
+    tail : Accumulation or None
+        Bounces at the end that are alike in the limit only, and so small that they are passed over.
     settles : str
         The measure that comes to rest at the end, after impacts that are not listed; empty where there are none.
     arguments : sequence of Argument
@@ -61,6 +63,7 @@ class Phase:
     unknown: tuple[list[float], list[float]] | None = None
     end: Ball | None = None
     bounces: Accumulation | None = None
+    tail: Accumulation | None = None
     settles: str = ""
     arguments: Sequence[Argument] = ()
 

@@ -12,6 +12,7 @@ from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.packed import nearest, pair
 from core.multibody.motion.motion import States
+from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.phase import Phase
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.trajectory.column_errors import FINEST
@@ -42,7 +43,7 @@ def how_until(phases: Sequence[Phase], time: float) -> How:
 def states_in(phase: Phase, times: Times, *, finer: bool = False) -> States:
     """Return the states of a phase, with what its tracks differ by; finer ones where there is a choice."""
     if phase.bounces is not None:
-        return _bouncing(phase, times)
+        return _bouncing(phase, phase.bounces, times)
     found = [_of_track(phase, k, times, finer=finer) for k in range(len(phase.tracks))]
     first = found[0]
     sizes = np.abs(first.q[..., 0]), np.abs(first.v[..., 0])
@@ -59,6 +60,10 @@ def states_in(phase: Phase, times: Times, *, finer: bool = False) -> States:
         reference = (other.q, other.v) if other.reference is None else other.reference
         q_error = q_error + SAFETY_FACTOR * np.abs((first.q - reference[0]).sum(axis=2))
         v_error = v_error + SAFETY_FACTOR * np.abs((first.v - reference[1]).sum(axis=2))
+    if phase.tail is not None:
+        # The models know nothing of bounces that are passed over; the tracks differ by as much with them as without.
+        bouncing = _bouncing(phase, phase.tail, times)
+        return States(bouncing.q, bouncing.v, q_error + bouncing.q_error, v_error + bouncing.v_error, None)
     return States(first.q, first.v, q_error, v_error, reference)
 
 
@@ -107,15 +112,14 @@ def _added(pairs: Floats, more: Floats) -> Floats:
     return np.stack([total, low - (total - high)], axis=-1)
 
 
-def _bouncing(phase: Phase, times: Times) -> States:
-    assert phase.bounces is not None
+def _bouncing(phase: Phase, bounces: Accumulation, times: Times) -> States:
     count = len(phase.tracks[0].q)
     q, v = np.zeros((len(times), count, 2)), np.zeros((len(times), count, 2))
     errors = np.zeros((2, len(times), count))
     for s, t in enumerate(times):
         late: Ball = arb(t) - phase.start
         late = late if late > 0 else ZERO
-        for k, (vector, out) in enumerate(zip(phase.bounces.at(late), (q, v), strict=True)):
+        for k, (vector, out) in enumerate(zip(bounces.at(late), (q, v), strict=True)):
             for i, x in enumerate(vector):
                 out[s, i] = pair(x, 0)
                 errors[k, s, i] = float(x.rad()) + FLOOR * abs(float(x))

@@ -33,7 +33,7 @@ from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness
 from core.multibody.phases.spun_friction import require_pressed_in_plane
-from core.multibody.phases.tracks import Track, Tracks
+from core.multibody.phases.tracks import Tracks
 from core.multibody.phases.turning_slip import begins_at_once, turns
 from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Unilateral
@@ -395,28 +395,21 @@ class _Run:
     def _accumulate(self, phase: Phase) -> bool:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
         for i, count in self.bounced.items():
-            own_time = self.tracks.own_time()
             few = len(self.motion.events) >= MANY or rate_share(self.unilateral[i], self.tracks) < SMALL
             listed = count >= (LATER_LISTED if few else LISTED)
-            found = recurring(self.unilateral, i, phase, own_time, arb(self.end), listed=listed)
+            found = recurring(self.unilateral, i, phase, self.tracks, arb(self.end), listed=listed)
             if found is None or not all(
-                tail.keeps_sign(one.law, one.sign) for tail in found.tails for one in phase.arguments if one.sign
+                found.tail.keeps_sign(one.law, one.sign) for one in phase.arguments if one.sign
             ):
                 continue
-            length = found.tails[0].length
-            phase.end, phase.settles = phase.start + length, self.unilateral[i].name
+            phase.end, phase.settles = phase.start + found.tail.length, self.unilateral[i].name
             if found.exact:
-                phase.bounces = found.tails[0]
-            self.tracks.each = [
-                Track(track.time + tail.length, *tail.limit())
-                for track, tail in zip(phase.tracks, found.tails, strict=True)
-            ]
+                phase.bounces = found.tail
+            else:
+                phase.tail = found.tail
+            self.tracks.each = found.ends
             if not (self.tracks.exact and found.exact):
-                # Over the bounces the acceleration changes in proportion to their length.
-                part = 0.0 if found.exact else float(length) / own_time
-                self.tracks.part(phase.still, max(FLOOR, part**2), max(FLOOR, part**3))
-                if part:
-                    self.tracks.delay(own_time * part**2)
+                self.tracks.part(phase.still)
             self._event("settle", self.unilateral[i].name)
             self._meet(phase, i)
             self.bounced = {}

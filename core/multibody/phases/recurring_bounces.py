@@ -2,12 +2,16 @@
 
 They are if the acceleration between them is constant, if the same impulse follows every arc with the same ratio of
 friction, if whatever else is closed stays so under every impulse, and if nothing else is met until they end.
+
+Where accelerations change, bounces are alike in the limit only. They are summed up twice, with the accelerations and
+rows of the first arc and with those of the place where that sum ends: the difference is the error of either, and when
+it is small enough the rest is passed over.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import (
@@ -19,15 +23,18 @@ from core.multibody.contacts.contact_responses import (
     slip_rate,
 )
 from core.multibody.contacts.contact_states import State, grips
+from core.multibody.contacts.projection import project
 from core.multibody.contacts.slip_directions import along_slip
+from core.multibody.equations.dynamics import accelerations
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.phase import Phase
+from core.multibody.phases.tracks import Track, Tracks
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.table import Row, Table
 
-SHORT = 2.0**-30
-"""Share of a scene's own time in which the bounces that are left are alike, where they are not exactly so."""
+ALIKE = 2.0**-60
+"""Share of the largest rate by which two sums of the bounces that are left may differ: far below doubles."""
 LISTED, LATER_LISTED = 12, 3
 """Bounces of one contact that are listed before the rest is summed up: at first; after `MANY` events, or if small."""
 MANY = 60
@@ -43,25 +50,28 @@ class Recurring:
 
     Attributes
     ----------
-    tails : list of Accumulation
-        On every track.
+    tail : Accumulation
+        On the first track.
     exact : bool
         Whether they are alike exactly, and not only in the limit.
+    ends : list of Track
+        Time and state at their end, on every track; on two at least where they are alike only in the limit.
     """
 
-    tails: list[Accumulation]
+    tail: Accumulation
     exact: bool
+    ends: list[Track]
 
 
 def recurring(
-    unilateral: Sequence[Unilateral], i: int, phase: Phase, own_time: float, end: Ball, *, listed: bool
+    unilateral: Sequence[Unilateral], i: int, phase: Phase, tracks: Tracks, end: Ball, *, listed: bool
 ) -> Recurring | None:
     """Return the bounces of a measure that follow the start of a phase, None where they do not end as they are.
 
     Parameters
     ----------
-    own_time : float
-        Time in which the scene moves by its own size (s).
+    tracks : Tracks
+        The sizes by which errors are measured.
     end : ball
         Time up to which the motion is wanted (s).
     listed : bool
@@ -78,28 +88,72 @@ def recurring(
         return None
     found: list[Accumulation] = []
     for k in range(len(phase.tracks)):
-        tail = _tail(unilateral, i, phase, k, None if exact or k else SHORT * own_time)
-        if tail is None:
+        tail = _tail(unilateral, i, phase, k, phase.tables[k].table, list(phase.models[k].whole.acceleration))
+        if tail is None or phase.start + tail.length > end:
             return None
         found.append(tail)
-    if phase.start + found[0].length > end or not _alone(unilateral, i, phase, found):
+    if exact:
+        ends = [_ended(track, tail) for track, tail in zip(phase.tracks, found, strict=True)]
+    else:
+        limits = _limits(unilateral, i, phase, found, tracks)
+        if limits is None:
+            return None
+        ends = limits
+    if not _alone(unilateral, i, phase, found, ends):
         return None
-    return Recurring(found, exact)
+    return Recurring(found[0], exact, ends)
 
 
-def _tail(unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int, most: float | None) -> Accumulation | None:
-    """Return the bounces of a measure as they follow the start of a track of a phase, None where they are not alike.
+def _ended(track: Track, tail: Accumulation) -> Track:
+    return Track(track.time + tail.length, *tail.limit())
 
-    Nor where they last for `most` seconds, if that is given.
+
+def _limits(
+    unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequence[Accumulation], tracks: Tracks
+) -> list[Track] | None:
+    """Return the end of bounces that are alike in the limit only, as the two sums have it; None where these differ.
+
+    The first track has the sum by what holds where the bounces begin, the last by what holds where they end; both are
+    put onto the rows, for what is closed is held all the while.
     """
-    track, table = phase.tracks[k], phase.tables[k].table
+    ends = []
+    around = tracks.wide()[0]
+    for track, tail in zip(phase.tracks, tails, strict=True):
+        ends.append(_ended(track, tail))
+    k = len(tails) - 1
+    table = replace(phase.tables[k].table, q=ends[k].q, v=ends[k].v)
+    later = _tail(unilateral, i, phase, k, table, accelerations(table)[0])
+    if later is None:
+        return None
+    other = _ended(phase.tracks[k], later)
+    change = zip(other.v, ends[k].v, tracks.scales()[1], strict=True)
+    if any(abs(float((x - y).mid())) > ALIKE * scale for x, y, scale in change):
+        return None
+    held = []
+    for track, number in ((ends[0], 0), (other, k)):
+        rows = replace(phase.tables[number].table, q=track.q, v=track.v)
+        project(rows, around)
+        held.append(Track(track.time, rows.q, rows.v))
+    return held
+
+
+def _tail(
+    unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int, table: Table, acceleration: Sequence[Ball]
+) -> Accumulation | None:
+    """Return the bounces of a measure that follow the start of a track of a phase, None where they are not alike.
+
+    Parameters
+    ----------
+    table : Table
+        Of the phase, at the place whose rows are taken for all of them.
+    acceleration : sequence of ball
+        Likewise.
+    """
+    track = phase.tracks[k]
     one = along_slip(unilateral, [i], track.q, track.v)[i]
-    acceleration = list(phase.models[k].whole.acceleration)
     opening = gap_rate(one, track.q, track.v)
     closing = -_acceleration(table, Row.held(one.name, one.gap), acceleration)
     if not opening > 0 or not closing > 0:
-        return None
-    if most is not None and not 2 * opening / closing / (1 - one.restitution) < most:
         return None
     found = responses(table, [one], [0])
     ratio: Ball | None = ZERO
@@ -119,13 +173,13 @@ def _tail(unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int, most: 
     return Accumulation(track.q, track.v, acceleration, push, yields, opening, closing, one.restitution)
 
 
-def _acceleration(table: Table, row: Row, acceleration: list[Ball]) -> Ball:
+def _acceleration(table: Table, row: Row, acceleration: Sequence[Ball]) -> Ball:
     """Return the acceleration along a row, with what its change of direction adds."""
     return rate_along(row.line(table.q), acceleration) - table.convective(row)
 
 
 def _straight(
-    one: Unilateral, found: Responses, table: Table, q: list[Ball], v: list[Ball], acceleration: list[Ball]
+    one: Unilateral, found: Responses, table: Table, q: list[Ball], v: list[Ball], acceleration: Sequence[Ball]
 ) -> bool:
     """Return whether the slip of bounces in space stays along one direction."""
     gain = _acceleration(table, Row(one.name, None, one.across or {}), acceleration)
@@ -173,7 +227,9 @@ def _pressed(unilateral: Sequence[Unilateral], phase: Phase, k: int, found: Resp
     return True
 
 
-def _alone(unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequence[Accumulation]) -> bool:
+def _alone(
+    unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequence[Accumulation], ends: Sequence[Track]
+) -> bool:
     """Return whether nothing else can happen until the bounces end: all else is too far away, or slips too fast.
 
     A gap may close at their end: one that shrinks all the while, and is not known to be below zero then.
@@ -190,7 +246,7 @@ def _alone(unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequen
             continue
         if state is State.OPEN:
             away = evaluated(one.gap, around) > 0
-            if not (away or (gap_rate(one, around, rates) < 0 and _may_be_open(one, tails))):
+            if not (away or (gap_rate(one, around, rates) < 0 and _may_be_open(one, ends))):
                 return False
         if state.sense:
             # A contact whose slip the impulses do not stop.
@@ -201,13 +257,12 @@ def _alone(unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequen
     return True
 
 
-def _may_be_open(one: Unilateral, tails: Sequence[Accumulation]) -> bool:
+def _may_be_open(one: Unilateral, ends: Sequence[Track]) -> bool:
     """Return whether a gap is not known to be below zero when bounces end."""
-    places = [tail.limit()[0] for tail in tails]
-    gaps = [evaluated(one.gap, q) for q in places]
+    gaps = [evaluated(one.gap, track.q) for track in ends]
     width = ZERO
-    if len(tails) > 1:
-        width = SAFETY_FACTOR * abs(gaps[0] - gaps[1]) + FLOOR * size(one.gap, places[0])
+    if len(ends) > 1:
+        width = SAFETY_FACTOR * abs(gaps[0] - gaps[1]) + FLOOR * size(one.gap, ends[0].q)
     return not gaps[0] + width < 0
 
 

@@ -255,3 +255,47 @@ def test_two_blades_that_are_driven_share_one_clock(rate: int, stiffness: int) -
     time = float(mpmath.findroot(above, (0.05, 0.9), solver="anderson"))
     assert kinds(answer)[:2] == ([("touch", "touch-l"), ("touch", "touch-r")] if time < 0.7 else [])
     assert [event.time for event in answer.events[:2]] == pytest.approx([time, time][: len(answer.events)], rel=1e-13)
+
+
+def jerked(across: int) -> dict[str, Any]:
+    """Return a stone on a string that rebounds, pulled sideways by a spring, as many metres from the origin."""
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"stone": {"mass": "1/2", "at": [f"{across} + 3/10", "-4/10"], "velocity": [-2, 0]}},
+        "connections": [
+            {"kind": "string", "name": "cord", "through": ["stone", [across, 0]], "length": 0.5, "restitution": 0.5},
+            {"kind": "spring", "a": "stone", "b": [across - 5, 0], "stiffness": 1, "rest_length": 0},
+        ],
+    }
+
+
+@pytest.mark.parametrize("across", [-7, 1000, 30_000])
+def test_jerks_that_accumulate_end_when_they_do_wherever_the_origin_is(across: int) -> None:
+    """They are alike in the limit only: how soon they may be summed up is a matter of how quickly forces change."""
+    here, there = (solve_scene(read(jerked(x)), [0.3], accuracy=1e-6) for x in (0, across))
+    assert kinds(here) == kinds(there)
+    for one, other in zip(here.events, there.events, strict=True):
+        assert one.time == pytest.approx(other.time, abs=one.error + other.error + 2.0**-53, rel=0)
+
+
+def test_what_is_taut_stays_so_when_the_jerks_of_another_string_end() -> None:
+    """The string that comes to rest last pulls at its own stone alone: the spring between them changes no tension."""
+    scene = jerked(0)
+    scene["bodies"]["other"] = {"mass": "1/2", "at": ["5 + 3/10", "-4/10"], "velocity": [-2, 0]}
+    scene["connections"][1]["b"] = "other"
+    cord = {"kind": "string", "name": "second", "through": ["other", [5, 0]], "length": 0.5, "restitution": 0.5}
+    answer = solve_scene(read({**scene, "connections": [*scene["connections"], cord]}), [0.5])
+    ended = [(event.kind, event.name) for event in answer.events if event.kind != "taut"]
+    assert ended == [("settle", "second"), ("settle", "cord")]
+
+
+def test_a_sample_among_jerks_that_are_passed_over_is_that_of_the_jerks() -> None:
+    """The string keeps its length there, and its rate is below the last one that is listed."""
+    events = solve_scene(read(jerked(0)), [0.3]).events
+    last, settled = events[-2].time, events[-1].time
+    inside = np.nextafter(last, 1) + np.array([0.2, 0.5, 0.9]) * (settled - last)
+    answer = solve_scene(read(jerked(0)), [*inside, 0.3])
+    place, rate = column(answer, "stone.position").values, column(answer, "stone.velocity").values
+    outward = np.einsum("ij,ij->i", place, rate)[:3] / 0.5
+    # What the fall of the tension of the spring and of the weight gains in so short a time, twice.
+    assert np.all(np.abs(outward) <= 2 * 30 * (settled - last))
