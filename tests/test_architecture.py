@@ -340,7 +340,7 @@ TESTED_IN |= {
             "phases/slow_bounces phases/tracks phases/watches start "
             "table/contact_places"
         ),
-        "table/test_contact_geometry_in_space": ("contacts/slip_directions phases/turning_pieces phases/turning_slip"),
+        "table/test_contact_geometry_in_space": ("contacts/slip_directions phases/turning_pieces"),
         "statics/test_exact_places": "statics/places_beside statics/small_motions",
         "test_stated_errors": "algebra/doubles",
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",
@@ -359,9 +359,7 @@ TESTED_IN |= {
         ),
         "phases/test_phase_answer": "phases/phase_states phases/phase_columns",
         "phases/test_described_system": "phases/method_samples phases/smooth_motion trajectory/scene_request",
-        "test_solve": (
-            "answer model_answer motion/modelling motion/motion motion/uniform motion/whole trajectory/events"
-        ),
+        "test_solve": ("answer model_answer motion/motion motion/uniform motion/whole trajectory/events"),
     }.items()
     for name in names.split()
 }
