@@ -219,6 +219,10 @@ studies: environment
 	$(BIN)/python -m tests.service.studies.real_clusters
 	$(BIN)/python -m benchmarks.studies
 
+# Whether the errors of fits are true, over 1,000 sets of data.
+coverage: environment
+	$(BIN)/python -m benchmarks.coverage_of_fits
+
 # Error against work of every method over 200 bodies: a study, and its figure in docs/accuracy.md.
 dial: environment
 	$(BIN)/python -m benchmarks.dial

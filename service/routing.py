@@ -156,6 +156,11 @@ class PostRoute(Documented):
     method: str = "POST"
 
     @property
+    def takes_parts(self) -> bool:
+        """Whether its columns of numbers may be sent as a file, beside the request."""
+        return hasattr(self.question, "COLUMNS_AT")
+
+    @property
     def duration(self) -> ExpectedDuration:
         """How long a question takes that is not answered at once."""
         why = "it was not answered within 20 ms of processor time; more is known only by running it"

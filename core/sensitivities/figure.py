@@ -39,6 +39,10 @@ class Figure:
         place = self.place(answer)
         return None if place is None else value_at(answer, place)
 
+    def history(self, answer: Any) -> list[tuple[Any, Any]]:
+        """Return kinds and names of the events of an answer on which the figure may depend."""
+        return [(inside(event, "kind"), inside(event, "name")) for event in inside(answer, EVENTS[0]) or ()]
+
     @property
     def words(self) -> str:
         """The figure in a sentence."""
@@ -62,6 +66,11 @@ class EventTime(Figure):
                 if not left:
                     return (*EVENTS, k, "time")
         return None
+
+    def history(self, answer: Any) -> list[tuple[Any, Any]]:
+        """Return kinds and names of the events up to this one."""
+        place = self.place(answer)
+        return super().history(answer)[: None if place is None else int(place[1]) + 1]
 
     @property
     def words(self) -> str:

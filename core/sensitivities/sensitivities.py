@@ -17,14 +17,13 @@ import numpy as np
 
 from core.arrays import Floats
 from core.assessment.compare import Form, Reference
-from core.assessment.figures import inside
 from core.assessment.graded_question import ANSWERING, GradedQuestion
 from core.assessment.propagation import SETTINGS, at, changed, numbers_of
 from core.assessment.question_source import Source
 from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, pointer_of
 from core.near_names import did_you_mean
 from core.sensitivities.derivative import Derivative, Known, derivative
-from core.sensitivities.figure import EVENTS, Figure
+from core.sensitivities.figure import Figure
 from core.work import spend
 
 MOST_FIGURES, MOST_INPUTS = 20, 20
@@ -107,19 +106,8 @@ class Inputs:
         return float(value)
 
     def with_number(self, path: Path, number: float) -> Mapping[str, Any]:
-        """Return the answer with another number at a path.
-
-        Raises
-        ------
-        MechanicsError
-            What the question is refused with then.
-        NotApplicable
-            Where other events happen.
-        """
-        answer = self._answered(path, number)
-        if _events(answer) != _events(self.answer):
-            raise NotApplicable("other events happen with a value beside this one")
-        return answer
+        """Return the answer with another number at a path, or raise what the question is refused with then."""
+        return self._answered(path, number)
 
     def unit_of(self, path: Path) -> str | None:
         """Return the declared unit of a number of the request."""
@@ -128,10 +116,6 @@ class Inputs:
     def _answer(self, path: Path, number: float) -> Mapping[str, Any]:
         spend(ANSWERING)
         return self._source.answer(json.dumps(changed(self.request, {path: number})))
-
-
-def _events(answer: Mapping[str, Any]) -> list[tuple[Any, Any]]:
-    return [(inside(event, "kind"), inside(event, "name")) for event in inside(answer, EVENTS[0]) or ()]
 
 
 def sensitivity(inputs: Inputs, of: Figure, to: Path) -> Sensitivity:
@@ -159,7 +143,10 @@ def sensitivity(inputs: Inputs, of: Figure, to: Path) -> Sensitivity:
     def evaluate(value: float) -> Known:
         if value == number:
             return Known(middle, reference.error)
-        found = of.value(inputs.with_number(to, value))
+        answer = inputs.with_number(to, value)
+        if of.history(answer) != of.history(inputs.answer):
+            raise NotApplicable("other events happen with a value beside this one")
+        found = of.value(answer)
         beside = None if found is None or isinstance(found, (str, bool)) else np.asarray(found, dtype=np.float64)
         if beside is None or beside.shape != middle.shape:
             raise NotApplicable(f"{of.words} is another kind of figure with a value beside this one")

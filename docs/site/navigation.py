@@ -43,6 +43,7 @@ def navigation() -> list[Any]:
         {"Grade in Canvas (LTI)": "lti.md"},
         {"A published solution with mistakes": "homework.md"},
         {"Find the input": "finding.md"},
+        {"Fit measured data": "fitting.md"},
         {"Study many variations": "studies.md"},
         {"Read and choose the accuracy": "accuracy.md"},
         {"Compute large trajectories": "large-trajectories.md"},

@@ -140,7 +140,7 @@ class Dispatcher:
         headers = context.headers
         if self._keys is not None:
             context.key = self._keys.admit(headers, context.address)
-        npz = require_readable(headers)
+        npz = require_readable(headers, parts=route.takes_parts)
         idempotency_key(headers)
         media = None
         accept = headers.get(b"accept", b"*/*")

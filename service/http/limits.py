@@ -47,19 +47,26 @@ def refuse_parameters(names: Iterable[str], rule: str) -> None:
         raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
 
 
-def require_readable(headers: Headers) -> bool:
-    """Return whether a body is declared as a numpy archive; refuse one that is not, nor as JSON."""
+def require_readable(headers: Headers, *, parts: bool = False) -> bool:
+    """Return whether a body is declared as no JSON: a numpy archive or, where these are taken, several parts.
+
+    Raises
+    ------
+    Refusal
+        For another media type.
+    """
     declared = headers.get(b"content-type", b"")
     if declared != b"application/json":
         declared = declared.split(b";", 1)[0].strip().lower()
-        if declared not in (b"application/json", b"application/x-npz"):
-            detail = "the body must be declared as Content-Type: application/json, or application/x-npz"
+        taken = (b"application/json", b"application/x-npz", *((b"multipart/form-data",) if parts else ()))
+        if declared not in taken:
+            detail = f"the body must be declared as Content-Type: {b', or '.join(taken).decode()}"
             raise Refusal("unsupported-media-type", detail)
     if headers.get(b"content-encoding", b"identity").lower() != b"identity":
         raise Refusal("unsupported-media-type", "compressed bodies are not read; send the body as it is")
     if headers.get(b"transfer-encoding", b"chunked").lower() != b"chunked":
         raise Refusal("unsupported-transfer-coding", "chunked is the only transfer coding", headers=(_CLOSE,))
-    return declared == b"application/x-npz"
+    return declared != b"application/json"
 
 
 def idempotency_key(headers: Headers) -> bytes:

@@ -43,6 +43,11 @@ class Arrays:
     def __init__(self, members: Mapping[str, NDArray[Any]]) -> None:
         self._members, self._unnamed = members, set(members)
 
+    @property
+    def names(self) -> list[str]:
+        """The names of all arrays."""
+        return [*self._members]
+
     def named(self, name: str) -> NDArray[Any]:
         """Return an array, or raise `InvalidParameter` where there is none of this name."""
         if name not in self._members:
@@ -72,6 +77,27 @@ def unpacked(body: bytes, most_bytes: int) -> tuple[bytes, Arrays]:
     Refusal
         For what is no such archive.
     """
+    contents = _contents(body, most_bytes)
+    document = contents.pop(METADATA, None)
+    if document is None:
+        raise _invalid(f"has no member {METADATA}")
+    return document, _read(contents)
+
+
+def arrays_of(body: bytes, most_bytes: int) -> Arrays:
+    """Return the arrays of an archive without a document; parameters and errors are those of `unpacked`."""
+    contents = _contents(body, most_bytes)
+    if METADATA in contents:
+        raise _invalid(f"has a member {METADATA}: the document is another part")
+    return _read(contents)
+
+
+def _read(contents: Mapping[str, bytes]) -> Arrays:
+    return Arrays({name.removesuffix(".npy"): _array(name, content) for name, content in contents.items()})
+
+
+def _contents(body: bytes, most_bytes: int) -> dict[str, bytes]:
+    """Return the members of an archive by name."""
     # Counted before the directory is read: it might have a hundred thousand entries.
     if body.count(ENTRY) > MOST_MEMBERS:
         raise Refusal("too-complex", f"the archive has more than {MOST_MEMBERS} members")
@@ -86,10 +112,7 @@ def unpacked(body: bytes, most_bytes: int) -> tuple[bytes, Arrays]:
         raise _invalid("cannot be read as a zip archive") from fault
     if len(contents) < len(members):
         raise _invalid("names a member twice")
-    document = contents.pop(METADATA, None)
-    if document is None:
-        raise _invalid(f"has no member {METADATA}")
-    return document, Arrays({name.removesuffix(".npy"): _array(name, content) for name, content in contents.items()})
+    return contents
 
 
 def _plain(member: ZipInfo) -> bool:

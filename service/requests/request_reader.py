@@ -20,9 +20,11 @@ import orjson
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
+from core.errors import Path
 from service.problems import Fault, Refusal, headline
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 from service.requests.error_messages import Wording
+from service.requests.form_body import is_form, unpacked_form
 from service.requests.layout import Layout
 from service.requests.npz_body import Arrays, taking_arrays, unpacked
 
@@ -52,6 +54,7 @@ class Reader(Generic[Q]):
         self._schema = TypeAdapter(question).core_schema
         self._limits, self._elsewhere = limits, elsewhere or {}
         self._keeps_digits = hasattr(question, "with_digits")
+        self._columns_at: Path = getattr(question, "COLUMNS_AT", ())
         self._keeps_document = hasattr(question, "with_document")
 
     @cached_property
@@ -74,13 +77,15 @@ class Reader(Generic[Q]):
         Parameters
         ----------
         npz : bool
-            Whether the body is a numpy archive; otherwise it is JSON.
+            Whether the body is a numpy archive, or has several parts; otherwise it is JSON.
 
         Raises
         ------
         Refusal
             With the pointers of what is wrong.
         """
+        if npz and self._columns_at and is_form(body):
+            return self._read(*unpacked_form(body, self._columns_at, self._limits))
         if npz:
             return self._read(*unpacked(body, self._limits.bytes))
         if len(body) < LARGE:

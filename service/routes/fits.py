@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field
 
 from core.arrays import Floats
-from core.errors import inside_field
+from core.errors import Path, inside_field
 from core.fits.comparison import compared
 from core.fits.fit import Data, Fit, fit
 from core.fits.losses import Robust
@@ -74,6 +74,9 @@ class FitModel(Request):
 
 class FitRequest(FitModel):
     """A question, measured data, and which numbers of the question they are to find."""
+
+    COLUMNS_AT: ClassVar[Path] = ("data", "columns")
+    """Where the columns of a file are put, if they are one."""
 
     data: FitData
     nuisance: list[Nuisance] = Field(

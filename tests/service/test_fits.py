@@ -118,6 +118,13 @@ async def test_what_is_wrong_is_said_at_its_place(place: list[Any], value: Any, 
     assert detail in fault["detail"]
 
 
+async def test_files_of_columns_belong_to_fits_alone() -> None:
+    async with client_of(SERVICE) as client:
+        response = await client.post("/v1/scenes", files={"request": b"{}", "columns": b"t"})
+    assert response.status_code == 415
+    assert "application/json, or application/x-npz" in response.json()["detail"]
+
+
 async def test_numbers_that_are_none_and_too_few_of_them() -> None:
     body = b'{"question": {"path": "/v1/scenes", "request": {"bodies": {"a": {"mass": 1, "at": [0, 0]}}}}, "unknown": '
     body += b'[{"pointer": "/bodies/a/at/0"}], "data": {"columns": {"t": [1, 2], "x": [1, 1e999]}, "times": "t", '

@@ -110,6 +110,16 @@ def test_what_is_no_figure_or_no_number_is_refused(of: Any, to: str, field: str,
     assert refusal.value.path == (field,)
 
 
+def test_what_happens_after_an_event_does_not_matter_to_its_time() -> None:
+    # The third touch, at (1 + 2 e + 2 e^2) sqrt(2 h/g) = 0.5, is at the last of the times.
+    request = BALL | {"let": {"g": 10, "h": 0.2}, "times": [0.5]}
+    request["connections"] = [BALL["connections"][0] | {"restitution": 0.5}]
+    one = found(request, SECOND, "/let/h")
+    assert one.value == pytest.approx(1.0, abs=one.error)
+    with pytest.raises(NotApplicable, match="other events"):
+        found(request, "/trajectory/columns/ball.position/values/0/1", "/let/h")
+
+
 def test_where_other_events_happen_there_is_no_derivative() -> None:
     # At rest on the floor: higher it falls, lower it would overlap.
     resting = BALL | {"let": {"g": 9.81, "h": 0}, "times": [1.0]}
