@@ -52,7 +52,7 @@ class Roots:
 
 def unresolved_root(run: Run, i: int) -> bool:
     """Return whether a root might hide between two samples, or more than one be there."""
-    one, other = run.numbers[i], run.numbers[i + 1]
+    one, other = run.shapes[i], run.shapes[i + 1]
     if one is None or other is None:
         return False
     doubt = run.doubt(i)
@@ -63,7 +63,7 @@ def unresolved_root(run: Run, i: int) -> bool:
 
 def roots_of(curve: Curve, target: float) -> Roots:
     """Return where a figure has a value, in the range of its input."""
-    run = scanned(curve, target, unresolved_root, finest_border=FINEST_BORDER)
+    run = scanned(curve, target, unresolved_root, finest_border=FINEST_BORDER, compressed=True)
     search = _Search(curve, target)
     zeros = search.zeros(run)
     families, taken = search.families(run, zeros)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf
+from math import asinh, inf
+from statistics import median
 
 from core.find.evaluations import Curve
 
@@ -41,12 +42,15 @@ class Run:
         Ascending.
     numbers : list of float or None
         The figure less what it is compared with; None where there is none.
+    shapes : list of float or None
+        The same by which it is judged how smoothly they follow one another.
     doubts : list of float
-        How far each is from what follows from its neighbours.
+        How far the shape of each is from what follows from its neighbours.
     """
 
     xs: list[float]
     numbers: list[float | None]
+    shapes: list[float | None]
     doubts: list[float]
 
     def doubt(self, i: int) -> float:
@@ -56,7 +60,7 @@ class Run:
 
     def variation(self, i: int) -> float:
         """Return the largest change between neighbours about the i-th interval."""
-        window = [g for g in self.numbers[max(i - 1, 0) : i + 3] if g is not None]
+        window = [g for g in self.shapes[max(i - 1, 0) : i + 3] if g is not None]
         return max((abs(b - a) for a, b in pairwise(window)), default=0.0)
 
 
@@ -65,14 +69,20 @@ Unresolved = Callable[[Run, int], bool]
 
 
 def scanned(
-    curve: Curve, target: float, unresolved: Unresolved, first: int = FIRST, finest_border: float = FINEST
+    curve: Curve,
+    target: float,
+    unresolved: Unresolved,
+    first: int = FIRST,
+    *,
+    finest_border: float = FINEST,
+    compressed: bool = False,
 ) -> Run:
     """Return a figure less a target, sampled until every interval is resolved or as narrow as `FINEST`."""
     varied = curve.varied
     for share in first_shares(first):
         curve.value(varied.at_share(share))
     while True:
-        run = run_of(curve, target)
+        run = run_of(curve, target, compressed=compressed)
         wide = []
         for i in range(len(run.xs) - 1):
             at_border = (run.numbers[i] is None) != (run.numbers[i + 1] is None)
@@ -95,16 +105,21 @@ def first_shares(count: int) -> list[float]:
     return [0.0, *inner, 1.0]
 
 
-def run_of(curve: Curve, target: float) -> Run:
-    """Return all samples of a figure that were taken."""
+def run_of(curve: Curve, target: float, *, compressed: bool) -> Run:
+    """Return all samples of a figure that were taken; `compressed` if magnitudes far from the target say little."""
     xs = curve.known
     found = [curve.number(x) for x in xs]
     numbers = [None if number is None else number - target for number in found]
     places = [curve.varied.coordinate(x) for x in xs]
-    return Run(xs, numbers, [_doubt(places, numbers, i, target) for i in range(len(xs))])
+    shapes, size = numbers, abs(target)
+    if compressed:
+        scale = size or median([abs(g) for g in numbers if g] or [1.0])
+        # What grows over many magnitudes is then as smooth as its logarithm.
+        shapes, size = [None if g is None else asinh(g / scale) for g in numbers], 1.0
+    return Run(xs, numbers, shapes, [_doubt(places, shapes, i, size) for i in range(len(xs))])
 
 
-def _doubt(places: Sequence[float], numbers: Sequence[float | None], i: int, target: float) -> float:
+def _doubt(places: Sequence[float], numbers: Sequence[float | None], i: int, size: float) -> float:
     """Return how far a sample is from the polynomial through its neighbours, two on each side as far as there are."""
     own = numbers[i]
     if own is None:
@@ -115,7 +130,7 @@ def _doubt(places: Sequence[float], numbers: Sequence[float | None], i: int, tar
         return inf
     expected = interpolated([places[k] for k in beside], [numbers[k] or 0.0 for k in beside], places[i])
     doubt = abs(expected - own)
-    return doubt if doubt > NOISE * max(abs(own), abs(target)) else 0.0
+    return doubt if doubt > NOISE * max(abs(own), size) else 0.0
 
 
 def _defined(numbers: Sequence[float | None], i: int, side: int) -> list[int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isfinite, nan
 from typing import Any, Literal
 
 from core.assessment.figures import is_null
@@ -81,19 +82,21 @@ def found(
     if len(varied) > 1:
         return _several(evaluations, conditions), evaluations
     curve, condition = Curve(evaluations), conditions[0]
-    _look(curve)
+    if not _look(curve) and not condition.of_event:
+        _missing(evaluations, conditions)
     findings = _one(curve, condition)
     findings.notices += _missing(evaluations, conditions)
     findings.resolution = (widest(curve),)
     return findings, evaluations
 
 
-def _look(curve: Curve) -> None:
-    """Ask across the range, and more closely if no answer has the figure."""
+def _look(curve: Curve) -> bool:
+    """Ask across the range, and more closely if no answer has the figure; return whether one has."""
     for shares in (first_shares(FEW), first_shares(FIRST)):
         values = [curve.value(curve.varied.at_share(share)) for share in shares]
         if any(value is not None for value in values):
-            return
+            return True
+    return False
 
 
 def _one(curve: Curve, condition: Condition) -> Findings:
@@ -111,11 +114,21 @@ def _one(curve: Curve, condition: Condition) -> Findings:
     if condition.wanted == "infinite":
         return Findings(infinities_of(curve))
     if condition.wanted == "equals":
-        assert isinstance(condition.equals, (int, float))
-        roots = roots_of(curve, float(condition.equals))
+        roots = roots_of(curve, _number(condition.equals))
         return Findings(roots.solutions, families=roots.families, nearest=roots.nearest)
     solutions, families = extremes_of(curve, 1.0 if condition.wanted == "largest" else -1.0)
     return Findings(solutions, families=families)
+
+
+def _number(value: Value | None) -> float:
+    """Return the number that a figure is to equal, which may be a decimal in quotes."""
+    try:
+        number = nan if isinstance(value, bool) or value is None else float(value)
+    except ValueError:
+        number = nan
+    if not isfinite(number):
+        raise InvalidParameter(("until", 0, "equals"), "be a number, as the figure is one")
+    return number
 
 
 def _are_numbers(curve: Curve) -> bool:

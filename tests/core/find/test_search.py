@@ -79,6 +79,9 @@ def test_what_oscillates_between_evenly_spaced_places_is_seen() -> None:
 def test_ranges_over_all_magnitudes(scale: Any) -> None:
     found, _ = search(log, (1e-300, 1e300), "equals", log(1e150), scale="log")
     within(found, [1e150])
+    found, asked = search(sqrt, (1e-300, 1e300), "equals", 1e140, scale="log")
+    within(found, [1e280])
+    assert asked.count < 60
     found, _ = search(lambda x: x - 1e-12, (1e-300, 3.0), "equals", 0.0, scale=scale)
     within(found, [1e-12])
 
@@ -254,6 +257,9 @@ def test_ranges_that_are_none_are_refused(least: float, most: float, scale: Any,
 
 
 def test_figures_that_do_not_fit_are_refused() -> None:
+    for value in ("word", True, "nan"):
+        with pytest.raises(InvalidParameter, match="as the figure is one"):
+            search(lambda x: x, (0.0, 3.0), "equals", value)
     with pytest.raises(InvalidParameter, match="number to be least"):
         search(lambda x: "word", (0.0, 3.0), "least")
     with pytest.raises(InvalidParameter, match="lead to a number, a word or a truth value"):
