@@ -55,7 +55,8 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
     occurrences, extremes = (None, None) if trajectory is None else system.searched(request.times, request.accuracy)
     model, accelerations, forces = _start_of(motion, float(request.times.max(initial=0.0)))
     outputs, period = request.outputs, _period(motion)
-    if period is not None and ends_within(motion.phases[0], float(period)):
+    periods = [part.period for part in model.apart if part.period is not None]
+    if periods and ends_within(motion.phases[0], max(periods)):
         # What would repeat comes to an end, or its strings to another phase, before it does.
         period, model = None, replace(model, apart=tuple(map(_without_period, model.apart)))
     answer = SceneSolution(

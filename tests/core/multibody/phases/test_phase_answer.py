@@ -147,3 +147,14 @@ def test_events_cost_as_much_as_they_are_however_late_the_horizon_is() -> None:
     assert len(early) == 129
     assert late[:129] == early
     assert late[-1].kind == "grazing-contact"
+
+
+@pytest.mark.parametrize("beside", [[], [{"kind": "contact", "place": "b", "on": {"at": [0, -9]}}]])
+def test_what_ends_before_it_repeats_has_no_period(beside: list[dict[str, object]]) -> None:
+    """A spring that shrinks to nothing ends the motion after half a period, a contact out of reach or not."""
+    spring = {"kind": "spring", "a": "b", "b": [0, 0], "stiffness": 4, "rest_length": "0.5"}
+    track = {"kind": "track", "place": "b", "on": {"at": [1, 0]}}
+    scene = {"gravity": [0, 0], "bodies": {"b": {"mass": 1, "at": [1, 0]}}, "connections": [track, spring, *beside]}
+    answer = solve_scene(read(scene), [0.5])
+    assert [part.period for part in answer.model.apart] == [None]
+    assert answer.period is None
