@@ -137,8 +137,9 @@ def _two(power: int) -> Ball:
     return (ZERO + 2) ** power
 
 
-AT_ORIGIN = -32
-"""Exponent of two of the share of its way within which a place is at the origin: events leave far less of it."""
+AT_ORIGIN = -24
+"""Exponent of two of the share of its way within which a place is at the origin: events leave far less of it, also of
+bounces of 2^-30 s, whose ways are 2^-60 m where places are known to 2^-92 m."""
 
 ROUNDED = 60
 """Bits by which an acceleration is less than that of the loads where it is what rounding leaves of their balance: more

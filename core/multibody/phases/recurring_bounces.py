@@ -13,6 +13,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from flint import arb
+
 from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import (
     Responses,
@@ -87,8 +89,10 @@ def recurring(
     if exact and not listed:
         return None
     found: list[Accumulation] = []
+    known = tracks.wide()[0]
     for k in range(len(phase.tracks)):
-        tail = _tail(unilateral, i, phase, k, phase.tables[k].table, list(phase.models[k].whole.acceleration))
+        gain = list(phase.models[k].whole.acceleration)
+        tail = _tail(unilateral, i, phase, k, phase.tables[k].table, gain, known)
         if tail is None or phase.start + tail.length > end:
             return None
         found.append(tail)
@@ -122,12 +126,17 @@ def _limits(
         ends.append(_ended(track, tail))
     k = len(tails) - 1
     table = replace(phase.tables[k].table, q=ends[k].q, v=ends[k].v)
-    later = _tail(unilateral, i, phase, k, table, accelerations(table)[0])
+    known = [arb(x.mid(), float(y.rad())) for x, y in zip(ends[k].q, around, strict=True)]
+    later = _tail(unilateral, i, phase, k, table, accelerations(table)[0], known)
     if later is None:
         return None
     other = _ended(phase.tracks[k], later)
     change = zip(other.v, ends[k].v, tracks.scales()[1], strict=True)
     if any(abs(float((x - y).mid())) > ALIKE * scale for x, y, scale in change):
+        return None
+    # What comes to rest has the same rates by both sums, and not at the same time.
+    late = abs(float((other.time - ends[k].time) * later.closing))
+    if late > ALIKE * tracks.fastest("rad" if unilateral[i].unit == "N m" else "m"):
         return None
     held = []
     for track, number in ((ends[0], 0), (other, k)):
@@ -138,7 +147,13 @@ def _limits(
 
 
 def _tail(
-    unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int, table: Table, acceleration: Sequence[Ball]
+    unilateral: Sequence[Unilateral],
+    i: int,
+    phase: Phase,
+    k: int,
+    table: Table,
+    acceleration: Sequence[Ball],
+    known: Sequence[Ball],
 ) -> Accumulation | None:
     """Return the bounces of a measure that follow the start of a track of a phase, None where they are not alike.
 
@@ -148,6 +163,8 @@ def _tail(
         Of the phase, at the place whose rows are taken for all of them.
     acceleration : sequence of ball
         Likewise.
+    known : sequence of ball
+        That place, as far as it is known.
     """
     track = phase.tracks[k]
     one = along_slip(unilateral, [i], track.q, track.v)[i]
@@ -168,7 +185,9 @@ def _tail(
     if one.slip is not None:
         push = [x + ratio * y for x, y in zip(push, found.columns[1], strict=True)]
         yields = yields + ratio * found.matrix[0][1]
-    if not yields > 0 or not _pressed(unilateral, phase, k, found, ratio):
+    # Of a level bar on two points one takes nothing of an impulse on the other: a share of rounding is none.
+    as_known = responses(replace(table, q=list(known)), [one], [0])
+    if not yields > 0 or not _pressed(unilateral, phase, k, as_known, ratio):
         return None
     return Accumulation(track.q, track.v, acceleration, push, yields, opening, closing, one.restitution)
 

@@ -299,3 +299,18 @@ def test_a_sample_among_jerks_that_are_passed_over_is_that_of_the_jerks() -> Non
     outward = np.einsum("ij,ij->i", place, rate)[:3] / 0.5
     # What the fall of the tension of the spring and of the weight gains in so short a time, twice.
     assert np.all(np.abs(outward) <= 2 * 30 * (settled - last))
+
+
+def test_bounces_at_one_end_of_a_bar_that_rests_on_the_other_come_to_rest() -> None:
+    """Of two points on a light bar, which lie level when one hits, the other takes nothing of the impulse."""
+    bar = {"mass": 2, "inertia": 2, "at": ["cos(1/20) - 1", "sin(1/20)"], "angle": "1/20"}
+    bar |= {"places": {"l": [-1, 0], "r": [1, 0]}}
+    ends = [
+        {"kind": "contact", "name": name, "place": f"bar.{name}", "on": {"at": [0, 0]}, "restitution": 0.5}
+        for name in "lr"
+    ]
+    found = solve_scene(read({"gravity": [0, -10], "bodies": {"bar": bar}, "connections": ends}), [0.0, 1.0])
+    assert {(event.kind, event.name) for event in found.events} == {("touch", "r"), ("settle", "r")}
+    assert found.ended is None
+    assert found.phases is not None
+    assert found.phases[-1].model == "rest"
