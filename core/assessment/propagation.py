@@ -66,6 +66,11 @@ def changed(request: Any, changes: Mapping[Path, float]) -> Any:
     return copy
 
 
+def unrounded(request: Any) -> Any:
+    """Return a request whose figures have all their digits, so that small changes are seen in them."""
+    return {name: entry for name, entry in request.items() if name != "round"}
+
+
 def at(document: Any, path: Path) -> Any:
     """Return what stands at a path of a document, None if nothing does."""
     for step in path:

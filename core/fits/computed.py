@@ -13,9 +13,9 @@ import numpy as np
 from core.arrays import Floats
 from core.assessment.figures import inside, value_at
 from core.assessment.graded_question import ANSWERING, IN_TIME, GradedQuestion
-from core.assessment.propagation import at, changed
+from core.assessment.propagation import at, changed, unrounded
 from core.assessment.question_source import Source
-from core.errors import InvalidParameter, NotApplicable, Path, pointer_of
+from core.errors import InvalidParameter, NotApplicable, Path, inside_field, pointer_of
 from core.near_names import did_you_mean
 from core.sensitivities.figure import Figure, figure_of
 from core.work import spend
@@ -23,6 +23,10 @@ from core.work import spend
 TRAJECTORY = "trajectory"
 COLUMNS: tuple[Path, ...] = ((TRAJECTORY, "columns"), (TRAJECTORY,), ())
 """Where answers have columns of samples: of described scenes, named scenes and free bodies."""
+
+QUESTION: Path = ("question", "request")
+FIGURES: Path = ("data", "figures")
+"""Where a request for a fit has what is computed, for faults."""
 
 COMPONENT = "take a component of a vector, such as ball.position.x"
 
@@ -73,6 +77,12 @@ class Computed:
     times : ndarray, shape (n,), or None
     count : int
         Rows of data.
+
+    Raises
+    ------
+    MechanicsError
+        Where the question is refused with the numbers that it has, or has no such figures; with the path of these in a
+        request for a fit.
     """
 
     def __init__(
@@ -85,7 +95,7 @@ class Computed:
         count: int,
     ) -> None:
         self._source, self._paths, self._times, self._count = source, tuple(paths), times, count
-        self._request = dict(request)
+        self._request = dict(unrounded(request))
         self.evaluations = 0
         self._held = lru_cache(HELD)(self._computed)
         self._rows: list[RowsOf] = []
@@ -146,7 +156,8 @@ class Computed:
         for outputs in (asked, [*asked, *(output for output in in_time if output not in asked)]):
             if outputs:
                 self._request["outputs"] = outputs
-            answer = self._source.answer(json.dumps(self._asked(numbers, 0.0)))
+            with inside_field(*QUESTION):
+                answer = self._source.answer(json.dumps(self._asked(numbers, 0.0)))
             found = {name: _rows_of(answer, written, name) for name, written in figures.items()}
             if None not in found.values():
                 break
@@ -159,7 +170,7 @@ class Computed:
 def _rows_of(answer: Any, written: Any, column: str) -> RowsOf | None:
     """Return where an answer has a figure, None where it has it not."""
     if not isinstance(written, str) or written.startswith("/"):
-        figure = figure_of(written, (column,))
+        figure = figure_of(written, (*FIGURES, column))
         return None if figure.value(answer) is None else RowsOf(figure)
     name, _, part = written.rpartition(".")
     for where in COLUMNS:
@@ -176,7 +187,7 @@ def _rows_of(answer: Any, written: Any, column: str) -> RowsOf | None:
 
 
 def _unknown(column: str, written: Any, answer: Any, found: RowsOf | None, timed: bool) -> InvalidParameter:
-    path: Path = ("figures", column)
+    path: Path = (*FIGURES, column)
     if found is not None:
         if not timed:
             remedy = "give times, or a figure that is one number"

@@ -12,7 +12,7 @@ from core.arrays import Floats, largest_magnitude
 from core.assessment.figures import steps_of
 from core.assessment.propagation import SETTINGS, at, changed, numbers_of
 from core.assessment.question_source import Source
-from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, inside_field, pointer_of
+from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, NotApplicable, Path, inside_field, pointer_of
 from core.fits.computed import Computed
 from core.fits.losses import Robust
 from core.fits.model import Model
@@ -25,6 +25,9 @@ from core.near_names import did_you_mean
 
 MOST_UNKNOWNS = 20
 """Numbers of the question and of the instrument together."""
+
+MOST_SLOPES = 4_000_000
+"""Numbers of data times numbers that are found: the slopes are held in some copies."""
 
 ANOTHER = 4.0
 """Chi-squared by which another minimum may be worse and still be worth naming: two standard deviations."""
@@ -145,8 +148,9 @@ def _fitted(
     measured = data.measured
     with inside_field("data"):
         rows = measured.observations()
-        computed = Computed(trials, request, paths, data.figures, rows.times, len(rows.rows))
-        stated = computed.stated(begun, source)
+    computed = Computed(trials, request, paths, data.figures, rows.times, len(rows.rows))
+    stated = computed.stated(begun, source)
+    with inside_field("data"):
         factors = [measured.factor(name, unit) for name, (unit, _) in zip(rows.names, stated, strict=True)]
         observed = rows.times_factors(factors)
     model = Model(computed, len(unknown), nuisance, observed)
@@ -154,6 +158,11 @@ def _fitted(
     priors = sum(one.prior is not None for one in unknown)
     if len(start) > MOST_UNKNOWNS:
         raise InvalidParameter("unknown", f"be at most {MOST_UNKNOWNS} with those of the instrument")
+    if observed.values.size * len(start) > MOST_SLOPES:
+        remedy = "send fewer rows or columns"
+        raise BudgetExceeded(
+            "slopes", observed.values.size * len(start), MOST_SLOPES, path=("data", "columns"), remedy=remedy
+        )
     if observed.values.size + priors < len(start):
         rule = f"have at least as many numbers as there are unknowns: {observed.values.size} for {len(start)}"
         raise InvalidParameter(("data", "columns"), rule, remedy="send more rows, or give priors")

@@ -38,6 +38,7 @@ class Model:
         """Columns whose times are shifted, and the place of the shift."""
         starts: list[float] = []
         scales: list[float] = []
+        factors: list[int] = []
         self._span = 0.0 if data.times is None else float(np.max(np.abs(data.times), initial=0.0))
         staged: dict[int, tuple[Stage, slice]] = {}
         for k, nuisance in enumerate(nuisances):
@@ -59,11 +60,14 @@ class Model:
             starts += stage.start.tolist()
             spread = float(np.max(np.std(data.values[:, columns], axis=0), initial=0.0)) or 1.0
             scales += [spread if nuisance.kind == "offset" else 1.0] * len(stage.start)
+            factors += [place] if nuisance.kind == "scale" else []
         order = list(STAGES)
         for k in sorted(staged, key=lambda k: order.index(nuisances[k].kind)):
             self._stages.append(staged[k])
         self.start, self.scales = np.array(starts), np.array(scales)
         """Of the instrument's numbers: where it is perfect, and changes that matter."""
+        self.relative = np.array([*range(count), *factors], dtype=np.int64)
+        """Places of the numbers whose changes are seen beside their own size."""
 
     def shown(self, numbers: Floats) -> Floats:
         """Return the figures as the instrument shows them, shape (n, m)."""

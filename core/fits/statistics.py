@@ -102,8 +102,8 @@ def statistics(problem: Problem, numbers: Floats, slopes: Floats, left: Floats, 
     count = len(numbers)
     chi_squared = float(residuals @ residuals)
     scales = problem.scales.copy()
-    own = numbers[: problem.model.count]
-    scales[: len(own)] = np.where(own == 0.0, scales[: len(own)], np.abs(own))
+    own = numbers[problem.model.relative]
+    scales[problem.model.relative] = np.where(own == 0.0, scales[problem.model.relative], np.abs(own))
     _, singular, rows = np.linalg.svd(slopes * scales, full_matrices=False)
     seen = singular > problem.slope_error * max(singular[0], 1e-300)
     freedom = len(residuals) - int(np.count_nonzero(seen))

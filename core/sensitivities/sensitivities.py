@@ -18,7 +18,7 @@ import numpy as np
 from core.arrays import Floats
 from core.assessment.compare import Form, Reference
 from core.assessment.graded_question import ANSWERING, GradedQuestion
-from core.assessment.propagation import SETTINGS, at, changed, numbers_of
+from core.assessment.propagation import SETTINGS, at, changed, numbers_of, unrounded
 from core.assessment.question_source import Source
 from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, pointer_of
 from core.near_names import did_you_mean
@@ -72,9 +72,9 @@ class Inputs:
     """
 
     def __init__(self, source: Source, request: Any) -> None:
-        self._source, self.request = source, request
+        self._source, self.request = source, unrounded(request)
         # No number is uncertain: errors are those of the computation alone.
-        self._question = GradedQuestion(source, request, {})
+        self._question = GradedQuestion(source, self.request, {})
         self._answered = cache(self._answer)
 
     @property

@@ -9,7 +9,7 @@ from typing import Any
 
 import orjson
 
-from core.errors import Path, pointer_of
+from core.errors import NotApplicable, Path, pointer_of
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.from_scipy import has_scipy, scipy_integrate
@@ -58,7 +58,8 @@ class RequestHandler:
             for question in (*(example.question for example in route.examples.values()), *route.warming)
         ]
         for route, question in sorted(asked, key=lambda each: (each[0].path == DESCRIBED_SCENES) != scenes_first):
-            with suppress(WorkLimitReached), work_limit(work):
+            # An example may need an extra that is not installed.
+            with suppress(WorkLimitReached, NotApplicable), work_limit(work):
                 self.answer(route, self.read(route, orjson.dumps(question)))
         if not isfinite(work) and has_scipy():
             # The first question that names one of its methods would otherwise wait for it.

@@ -39,7 +39,9 @@ Answers are JSON. Every path that answers a question also exists with the ending
 with the same names and the rest as JSON in metadata.json; `Accept: application/x-npz` on the path itself has the same
 effect, as `Accept` has for the other endings. A question may be sent as such an archive, too
 (`Content-Type: application/x-npz`): metadata.json is the document, in which `{"array": "positions"}` stands for the
-array of the member positions.npy.
+array of the member positions.npy. To `/v1/fits` the data may be sent as a file beside the request
+(`multipart/form-data`): the part `request` is the document without `data/columns`, the part `columns` a CSV table with
+the names of the columns in its first line, or a numpy archive with an array for each.
 
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
 """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar
@@ -27,7 +26,8 @@ from service.requests.figures import WrittenFigure
 from service.responses.linear_svg import Line, Panel, panels
 from service.responses.svg import SVG
 from service.responses.unit_text import unit_text
-from service.routes.assessments.question_table import EndpointRequest, QuestionTable, moved_inside, within_question
+from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, moved_inside
+from service.routes.assessments.route_source import Refused
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, Seconds, View
 
@@ -207,9 +207,12 @@ def _fitted(table: QuestionTable, asked: FitModel, question: FitRequest, budget:
     table.readable(asked.question)
     source, trials = (table.source(asked.question, one) for one in (budget, replace(budget, audited=False)))
     data = Data(measured, given.figures)
-    with within_question():
-        source.answer(json.dumps(asked.question.request))
-    return fit(source, asked.question.request, data, asked.unknown, question.nuisance, question.robust, trials=trials)
+    request, unknown = asked.question.request, asked.unknown
+    try:
+        return fit(source, request, data, unknown, question.nuisance, question.robust, trials=trials)
+    except Refused as refused:
+        # By the reader of the question, with the numbers from which the search starts.
+        raise moved_inside(refused.refusal.problem, WITHIN) from None
 
 
 def _view(found: Fit, others: Sequence[Fit]) -> Answer:

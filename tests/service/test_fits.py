@@ -101,7 +101,7 @@ async def test_residuals_are_drawn() -> None:
         (["data", "times"], "T", "/data/times", "column of the data"),
         (["question", "path"], "/v1/scene", "/question/path", "fitted to data"),
         (["question", "request", "gravty"], 1, "/question/request/gravty", "not known"),
-        (["question", "request", "let", "L"], "x+", "/question/request/bodies/bob/at/0", "known names"),
+        (["question", "request", "gravity"], [0, "-q"], "/question/request/gravity/1", "known names"),
         (["nuisance"], [{"kind": "offset", "figure": "q"}], "/nuisance/0/figure", "column of figures"),
         (["nuisance"], [{"kind": "frame", "figure": "x"}], "/nuisance/0/figure", "two or three"),
         (["nuisance"], [{"kind": "tilt", "figure": "x"}], "/nuisance/0/kind", "must be"),
@@ -116,6 +116,14 @@ async def test_what_is_wrong_is_said_at_its_place(place: list[Any], value: Any, 
     fault = response.json()["errors"][0]
     assert fault["pointer"] == pointer
     assert detail in fault["detail"]
+
+
+async def test_what_is_unknown_may_have_any_value_in_the_question() -> None:
+    request = deepcopy(FILM)
+    request["question"]["request"]["let"]["L"] = -1e308
+    request["unknown"][1]["start"] = 1.0
+    answer = (await sent(request)).json()
+    assert answer["parameters"] == (await sent(FILM)).json()["parameters"]
 
 
 async def test_files_of_columns_belong_to_fits_alone() -> None:

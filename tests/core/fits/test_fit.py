@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import sys
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.stats import binom
 
-from core.errors import InvalidParameter, MechanicsError
+from core.errors import InvalidParameter, MechanicsError, NotApplicable
 from core.fits.comparison import compared
 from core.fits.fit import Data, Fit, fit
 from core.fits.losses import Robust
@@ -222,6 +223,25 @@ def test_what_cannot_be_found_is_refused(unknown: list[Unknown], path: tuple[Any
     with pytest.raises(InvalidParameter) as refusal:
         fit(source(), THROW, data(TIMES[:2], 0.1, y=thrown(1)[:2]), unknown)
     assert refusal.value.path == path
+
+
+def test_without_scipy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    with pytest.raises(NotApplicable) as refusal:
+        fitted(1)
+    assert "polhode[scipy]" in str(refusal.value.remedy)
+
+
+def test_data_in_any_order_and_figures_that_a_request_rounds() -> None:
+    order = np.random.default_rng(0).permutation(len(TIMES))
+    shuffled = fit(source(), THROW | {"round": 3}, data(TIMES[order], 0.02, y=thrown(1)[order]), THREE)
+    assert shuffled.values == pytest.approx(fitted(1).values, rel=1e-9)
+    twice = np.concatenate([TIMES, TIMES])
+    doubled = fit(source(), THROW, data(twice, 0.02, y=np.concatenate([thrown(1), thrown(1)])), THREE)
+    assert doubled.values == pytest.approx(shuffled.values, rel=1e-9)
+    assert doubled.statistics.standard_errors == pytest.approx(
+        shuffled.statistics.standard_errors / np.sqrt(2), rel=1e-6
+    )
 
 
 def test_figures_without_times_and_questions_without_answers() -> None:
