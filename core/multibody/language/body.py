@@ -75,8 +75,14 @@ class SceneBody:
     @property
     def rim(self) -> Number | None:
         """The radius on which it rolls: its own, or that of a disc or ball whose centre is the centre of mass."""
-        if self.radius is not None or not isinstance(self.shape, Mapping):
-            return self.radius
+        if self.radius is None and self.round and self.shape is not None:
+            return self.shape.get("radius")
+        return self.radius
+
+    @property
+    def round(self) -> bool:
+        """Whether its shape is a disc or a ball whose centre is the centre of mass."""
+        if not isinstance(self.shape, Mapping):
+            return False
         at = self.shape.get("at") or ()
-        centred = isinstance(at, Sequence) and all(x == 0 for x in at)
-        return self.shape.get("radius") if centred and self.shape.get("kind") in ("disc", "ball") else None
+        return self.shape.get("kind") in ("disc", "ball") and isinstance(at, Sequence) and all(x == 0 for x in at)

@@ -40,9 +40,9 @@ class Surroundings:
         return body is not None and body.rim is not None
 
     def outlined(self, place: object) -> bool:
-        """Return whether a place is a body that stands for its whole shape, which has more than a rim."""
+        """Return whether a place is a body that stands for its whole shape, which is more than a circle about it."""
         body = self.bodies.get(place) if isinstance(place, str) else None
-        return body is not None and body.shape is not None and body.rim is None
+        return body is not None and body.shape is not None and not body.round
 
     def concentric(self, a: object, b: object) -> bool:
         """Return whether two bodies of the plane have one centre, at which a connection joins them."""

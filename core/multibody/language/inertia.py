@@ -7,11 +7,12 @@ from typing import Any
 
 from flint import arb, fmpq
 
+from core.balls import as_text
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.language.body import SceneBody
-from core.multibody.language.numerals import Numerals
+from core.multibody.language.numerals import LARGEST, LEAST, Numerals
 from core.multibody.language.shapes import shape_of
 from core.quantities import members_of
 
@@ -70,6 +71,13 @@ def _of_shape(name: str, mass: Ball, written: Mapping[str, Any], numerals: Numer
             remedy=f"move it by {[-float(x) for x in shape.centroid]}, or give the inertia",
         )
     own = [mass * x for x in shape.moments]
+    for x in own:
+        if x > LARGEST or 0 < x < LEAST:
+            raise InvalidParameter(
+                path,
+                f"give the body an inertia between 1e-300 and 1e300 kg m^2, unlike {as_text(x, 3)}",
+                remedy="describe the scene in other units",
+            )
     return own[0] if dimension == 2 else [[own[i] if i == j else ZERO for j in range(3)] for i in range(3)]
 
 

@@ -93,7 +93,7 @@ def shape_of(written: object, numerals: Numerals, path: Path, dimension: int) ->
         raise InvalidParameter(path, "be an object", remedy='such as {"kind": "box", "width": 0.2, "height": 0.1}')
     kinds = IN_PLANE if dimension == 2 else IN_SPACE
     kind = written.get("kind")
-    if kind in ALL and kind not in kinds:
+    if isinstance(kind, str) and kind in ALL and kind not in kinds:
         where = "plane" if dimension == 2 else "space"
         rule = f"be one of {', '.join(kinds)} in {'the ' if dimension == 2 else ''}{where}"
         raise InvalidParameter((*path, "kind"), rule)

@@ -17,6 +17,7 @@ from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.laws import Pull
+from core.multibody.audit.outlines import OnOutline
 from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, rate, with_rate
 from core.multibody.audit.strings import ChainDefinition, Straight, StringDefinition
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
@@ -273,6 +274,8 @@ def _one_sided(one: Definition, placement: Placement, still: Motion, reader: Rea
         closes, opens = "stop", "release"
     elif isinstance(one, OnFace):
         rolls = one.radius > 0.0
+    elif isinstance(one, OnOutline):
+        rolls = one.reach > 0.0
     elif isinstance(one, OnRound):
         rims = zip((one.round.a, one.round.b), one.round.radii, strict=True)
         rolls = any(place.body is not None and radius > 0.0 for place, radius in rims)

@@ -68,6 +68,7 @@ def test_moments_in_space() -> None:
         # A star goes around twice, and turns to the left at each of its corners.
         ({"kind": "polygon", "corners": [[0, 3], [-2, -3], [3, 1], [-3, 1], [2, -3]]}, "corners"),
         ("box", None),
+        ({"kind": ["box"]}, "kind"),
     ],
 )
 def test_shapes_that_cannot_be(shape: Any, at: str | None) -> None:
@@ -98,3 +99,18 @@ def test_a_centred_disc_is_a_rim_and_has_its_own_inertia() -> None:
     answer = solve_scene(read(scene))
     assert answer.accelerations is not None
     assert answer.accelerations["wheel"].linear[0] == pytest.approx(2 / 3 * 9.81 / sqrt(2), rel=1e-15)
+
+
+def test_a_drum_with_a_shape_touches_with_its_shape() -> None:
+    """A box of 0.2 m with a drum of 0.3 m falls by what is below its corners."""
+    body = {"mass": 1, "at": [0, 1], "radius": 0.3, "shape": {"kind": "box", "width": 0.2, "height": 0.2}}
+    contact = {"kind": "contact", "name": "f", "place": "b", "on": {"at": [0, 0]}}
+    scene = {"gravity": [0, -10], "bodies": {"b": body}, "connections": [contact], "simultaneous": "together"}
+    assert solve_scene(read(scene), [1.0]).events[0].time == pytest.approx(sqrt(0.18), rel=1e-15)
+
+
+def test_inertia_out_of_range_is_refused() -> None:
+    body = {"mass": 1, "at": [0, 1], "shape": {"kind": "box", "width": 1e300, "height": 1}}
+    with pytest.raises(InvalidParameter) as fault:
+        solve_scene(read({"bodies": {"b": body}}))
+    assert fault.value.path == ("bodies", "b", "shape")
