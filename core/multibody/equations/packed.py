@@ -162,6 +162,8 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     if pull is not None and loaded and pull < (heaviest or 0) - (inert or 0) - ROUNDED:
         # What is left of loads that are balanced tells no scale.
         pull = None
+    if spin is not None and loaded and size is not None and spin < (heaviest or 0) - (inert or 0) - size - ROUNDED:
+        spin = None
     times = []
     if turn is not None:
         times.append(-turn)

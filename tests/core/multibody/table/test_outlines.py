@@ -137,3 +137,25 @@ def test_a_box_in_space_falls_on_its_corners() -> None:
     assert answer.forces is not None
     assert answer.forces["f.normal"].value == pytest.approx(G, rel=1e-15)
     assert answer.forces["f.1.normal"].value is None
+
+
+def test_a_smooth_box_tips_from_exact_balance() -> None:
+    """Its centre passes the edge at 2 m/s, and from there on energy is kept: the edge is under the box, which turns."""
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"box": box(0.5, 0.2, [1, 1.1], velocity=[2, 0]), "table": box(4, 1, [0, 0.5], mass=1000)},
+        "connections": [
+            {**FLOOR, "place": "table"},
+            {"kind": "contact", "name": "g", "a": "box", "b": "table"},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.55], ("trajectory", "energy-in-time"))
+    assert kinds(answer)[:2] == [("lift-off", "g.2"), ("lift-off", "g.1")]
+    assert [event.time for event in answer.events[:2]] == [0.375, 0.5]
+    angle = float(column(answer, "box.angle").values[0])
+    assert angle < -1e-4
+    # The corner of the table lies on the lower edge of the box.
+    places = [column(answer, f"{name}.position").values[0] for name in ("box", "table")]
+    x, y = places[0] - places[1] - [2, 0.5]
+    assert cos(angle) * y - sin(angle) * x == pytest.approx(0.1, rel=1e-14)
+    assert column(answer, "energy.total").values[0] == pytest.approx(2 + 11 + 5000, rel=1e-14)
