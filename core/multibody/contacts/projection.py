@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from flint import arb
 
@@ -41,3 +42,12 @@ def project(table: Table, around: Sequence[Ball]) -> None:
     for vector in (table.q, table.v):
         scale = max((abs(float(x)) for x in vector), default=0.0)
         vector[:] = [arb(x.mid(), HELD * scale) for x in vector]
+
+
+def projected(
+    table: Table, q: Sequence[Ball], v: Sequence[Ball], around: Sequence[Ball]
+) -> tuple[list[Ball], list[Ball]]:
+    """Return a state put onto the rows of a table: see `project`."""
+    put = replace(table, q=list(q), v=list(v))
+    project(put, around)
+    return put.q, put.v

@@ -23,6 +23,7 @@ from core.multibody.contacts.contact_responses import slip_rate
 from core.multibody.contacts.contact_start import assemble_contacts
 from core.multibody.contacts.contact_states import Problem, State, change_of, phase_table
 from core.multibody.contacts.impacts import Impact, approaching, impact
+from core.multibody.contacts.projection import projected
 from core.multibody.equations.dynamics import kinetic
 from core.multibody.equations.packed import nearest
 from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
@@ -177,7 +178,8 @@ class _Run:
                 return False
             alike: list[Impact] = []
             for track in tracks.each if not tracks.exact else ():
-                state, how = (track.q, track.v), self.base.scene.simultaneous
+                # Rows that follow from others do so on the rows alone: a state beside them would be held by all.
+                state, how = projected(table, track.q, track.v, q), self.base.scene.simultaneous
                 one = impact(table, unilateral, self.touching, *state, settled=outcome, simultaneous=how)
                 if isinstance(one, Problem):
                     self._record(hit, outcome)

@@ -25,7 +25,7 @@ from core.multibody.contacts.contact_responses import (
     slip_rate,
 )
 from core.multibody.contacts.contact_states import State, grips
-from core.multibody.contacts.projection import project
+from core.multibody.contacts.projection import projected
 from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.equations.dynamics import accelerations
 from core.multibody.phases.accumulation import Accumulation
@@ -120,11 +120,8 @@ def _limits(
     The first track has the sum by what holds where the bounces begin, the last by what holds where they end; both are
     put onto the rows, for what is closed is held all the while.
     """
-    ends = []
-    around = tracks.wide()[0]
-    for track, tail in zip(phase.tracks, tails, strict=True):
-        ends.append(_ended(track, tail))
-    k = len(tails) - 1
+    ends = [_ended(track, tail) for track, tail in zip(phase.tracks, tails, strict=True)]
+    k, around = len(tails) - 1, tracks.wide()[0]
     table = replace(phase.tables[k].table, q=ends[k].q, v=ends[k].v)
     known = [arb(x.mid(), float(y.rad())) for x, y in zip(ends[k].q, around, strict=True)]
     later = _tail(unilateral, i, phase, k, table, accelerations(table)[0], known)
@@ -138,12 +135,8 @@ def _limits(
     late = abs(float((other.time - ends[k].time) * later.closing))
     if late > ALIKE * tracks.fastest("rad" if unilateral[i].unit == "N m" else "m"):
         return None
-    held = []
-    for track, number in ((ends[0], 0), (other, k)):
-        rows = replace(phase.tables[number].table, q=track.q, v=track.v)
-        project(rows, around)
-        held.append(Track(track.time, rows.q, rows.v))
-    return held
+    each = ((ends[0], phase.tables[0].table), (other, table))
+    return [Track(end.time, *projected(rows, end.q, end.v, around)) for end, rows in each]
 
 
 def _tail(

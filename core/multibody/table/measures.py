@@ -180,13 +180,17 @@ class Measures:
 
     def unturned(self, name: str, a: Point, b: Point, path: Path) -> None:
         """Hold the orientation of one body to another."""
-        frames = self.coordinates.frames
-        if any(point.body is not None and not frames[point.body].orients for point in (a, b)):
-            turns = [None if point.body is None else frames[point.body].turn for point in (a, b)]
-            if turns[0] is not None and turns[1] is not None:
-                apart = difference(coordinate(turns[0]), coordinate(turns[1]))
+        frames = [None if point.body is None else self.coordinates.frames[point.body] for point in (a, b)]
+        axes = all(frame is None or frame.orients for frame in frames)
+        if self.dimension == 2 or not axes:
+            turns = [{} if frame is None or frame.turn is None else coordinate(frame.turn) for frame in frames]
+            if all(frame is None or frame.turn is not None for frame in frames):
+                # One row, whatever the attitude: cosine and sine would need both, of which one follows from the other.
+                apart = difference(*turns)
                 row = self.hold(name, difference(apart, constant(evaluated(apart, self.table.q))))
                 self.force(f"{name}.moment", [(row, constant(ONE))], "N m")
+                return
+        if not axes:
             # A particle has no orientation that could be held or hold.
             return
         unit = [[ONE if i == j else ONE - ONE for j in range(self.dimension)] for i in range(self.dimension)]

@@ -314,3 +314,27 @@ def test_bounces_at_one_end_of_a_bar_that_rests_on_the_other_come_to_rest() -> N
     assert found.ended is None
     assert found.phases is not None
     assert found.phases[-1].model == "rest"
+
+
+def test_a_welded_pair_that_turns_lands_once() -> None:
+    """Of the rows of a weld and of attitudes some follow from others, but only where all hold: one impact stops it."""
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {
+            "disc": {"mass": 0.5, "inertia": 0.01, "at": [0, 0], "velocity": [-3.52, 0], "angular_velocity": 1},
+            "bar": {
+                "mass": 0.5,
+                "inertia": "1/24",
+                "at": ["1/4", "-sqrt(3)/4"],
+                "angle": "-acos(1/2)",
+                "places": {"top": [-0.5, 0]},
+            },
+        },
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "disc", "on": {"at": [0, "-0.6"]}},
+            {"kind": "weld", "a": "bar.top", "b": "disc"},
+        ],
+    }
+    answer = solve_scene(read(scene), [1])
+    assert kinds(answer) == [("touch", "floor")]
+    assert column(answer, "disc.position").values[-1][1] == pytest.approx(-0.6, abs=1e-12)
