@@ -315,7 +315,9 @@ TESTED_IN |= {
             "laws/law laws/linear laws/samples laws/series laws/tape table/formula_laws"
         ),
         "table/test_formulas_of_time": "audit/driven table/moving_places",
-        "laws/test_formulas_of_pieces": ("equations/starting_pieces laws/corners language/switches table/law_pieces"),
+        "laws/test_formulas_of_pieces": (
+            "equations/starting_pieces laws/corners language/switches phases/formula_ends table/law_pieces"
+        ),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "
             "table/frames table/joints table/measures table/rolling table/rows "

@@ -272,7 +272,8 @@ def advance(
                 c[i, k] = path[k * size + i]
         h = way * step_size(c, table.group, tolerance, lowest_bound(table.laws.gaps, order))
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
-            return (SINGULAR if abs(h) >= 0.0 else LOST), step
+            # Where a formula loses its value, that of its series is no number.
+            return (SINGULAR if abs(h) >= 0.0 or table.laws.operations.shape[0] > 0 else LOST), step
         if abs(h) >= abs(left):
             h = left
         if table.laws.operations.shape[0] > 0:
@@ -296,7 +297,8 @@ def advance(
             v[i, 0], v[i, 1] = dd_add(v[i, 0], v[i, 1], ph, pl + changes[1, i])
             place[i] = q[i, 0]
             if not (abs(q[i, 0]) < 1e150 and abs(v[i, 0]) < 1e150):
-                return LOST, step
+                formed = math.isfinite(q[i, 0]) and math.isfinite(v[i, 0])
+                return (LOST if formed or table.laws.operations.shape[0] == 0 else SINGULAR), step
         entries_of_lines(table, place, lines)
         if not inverted(table, lines, space):
             return SINGULAR, step

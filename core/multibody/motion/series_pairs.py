@@ -268,11 +268,12 @@ def advance_pairs(
             for k in range(order + 1):
                 c[i, k, 0], c[i, k, 1] = path[0, k * size + i], path[1, k * size + i]
         if not np.all(np.isfinite(c[:, order, 0])):
-            # Beside a collision the last coefficients overflow before the step is too short.
-            return (SINGULAR if np.all(np.isfinite(c[:, 2, 0])) else LOST), step
+            # Beside a collision the last coefficients overflow before the step is too short; a formula has no value.
+            known = np.all(np.isfinite(c[:, 2, 0])) or table.laws.operations.shape[0] > 0
+            return (SINGULAR if known else LOST), step
         h = way * step_size(c[:, :, 0], table.group, tolerance, lowest_bound(table.laws.gaps, order))
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
-            return (SINGULAR if abs(h) >= 0.0 else LOST), step
+            return (SINGULAR if abs(h) >= 0.0 or table.laws.operations.shape[0] > 0 else LOST), step
         if abs(h) >= abs(left):
             h = left
         if table.laws.operations.shape[0] > 0:
@@ -284,7 +285,8 @@ def advance_pairs(
             q[i, 0], q[i, 1] = moved[0, 0, i], moved[0, 1, i]
             v[i, 0], v[i, 1] = moved[1, 0, i], moved[1, 1, i]
             if not (abs(q[i, 0]) < 1e150 and abs(v[i, 0]) < 1e150):
-                return LOST, step
+                formed = math.isfinite(q[i, 0]) and math.isfinite(v[i, 0])
+                return (LOST if formed or table.laws.operations.shape[0] == 0 else SINGULAR), step
         entries_of_lines_pairs(table, q, lines)
         found = inverted_pairs(table, lines, space)
         if found == FAILED:

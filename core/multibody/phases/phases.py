@@ -29,6 +29,7 @@ from core.multibody.equations.packed import nearest
 from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.phases.formula_ends import formula_that_ends
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
@@ -358,9 +359,11 @@ class _Run:
             return False
         except SingularPlace as place:
             phase.end = phase.start + place.time
-            event = MotionEvent("singular", place.name, nearest(phase.end), self.tracks.late() + place.error)
-            self.motion.events.append(event)
-            self.motion.ended = event
+            lost = None if place.name else formula_that_ends(phase, float(place.time))
+            kind, name = ("singular", place.name) if lost is None else (lost.code, ", ".join(lost.contacts))
+            self.motion.problem = lost
+            self.motion.ended = MotionEvent(kind, name, nearest(phase.end), self.tracks.late() + place.error)
+            self.motion.events.append(self.motion.ended)
             return False
         if not crossings:
             return False

@@ -9,7 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from core.errors import AccuracyUnreachable, InvalidParameter
+from core.errors import InvalidParameter
 from core.multibody.answer import SceneSolution
 from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
@@ -110,8 +110,11 @@ def test_a_speed_that_is_written_out_is_the_speed() -> None:
 
 
 def test_a_root_does_not_go_on_with_its_other_branch() -> None:
-    with pytest.raises(AccuracyUnreachable):
-        answer(scene([0, "-0.1*(vy^2)^0.5*vy"], [0, -10], velocity=[0, 10]), [0.0, 0.5, 2.0])
+    found = answer(scene([0, "-0.1*(vy^2)^0.5*vy"], [0, -10], velocity=[0, 10]), [0.0, 0.5, 2.0])
+    assert found.ended is not None
+    assert found.ended.kind == "formula"
+    # v' = -10 - v^2/10 from 10 on: v = 10 tan(pi/4 - t).
+    assert found.ended.time == pytest.approx(np.pi / 4, abs=1e-8)
 
 
 def test_a_pendulum_swings_with_quadratic_drag() -> None:
@@ -284,3 +287,33 @@ def test_a_sample_at_a_jump_has_the_force_that_follows(law: str, forces: list[fl
     found = answer({"gravity": [0, 0], "bodies": body, "connections": [spring]}, [0.0, 0.5, 1.0])
     assert found.trajectory is not None
     assert found.trajectory.columns["s.force"].values.tolist() == forces
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize(
+    ("formula", "end", "place"),
+    [
+        ("sqrt(2 - t)", 2, lambda t: 2 ** mp.mpf("1.5") * (10 * t - 8) / 15 + 4 * (2 - t) ** mp.mpf("2.5") / 15),
+        ("1/(2 - t)", 2, lambda t: (2 - t) * mp.log(1 - t / 2) + t),
+        ("1/(2 - x)", None, None),
+    ],
+)
+def test_a_formula_that_loses_its_value_ends_the_motion(
+    formula: str, end: float | None, place: Callable[[mp.mpf], mp.mpf] | None, beside: bool
+) -> None:
+    """Also in a scene with contacts; v^2/2 = log(2/(2 - x)) from rest, and u = sqrt(log(2/(2 - x))) takes the time."""
+    description = scene([formula, 0])
+    if beside:
+        description["connections"].append({"kind": "contact", "place": "p", "on": {"at": [0, -1]}})
+    found = answer(description, [0.0, 1.0, 5.0])
+    assert found.problem is not None
+    assert (found.problem.code, found.problem.connections) == ("formula", ("f",))
+    assert f"where {'x' if 'x' in formula else 't'} = 2" in found.problem.explanation
+    with mp.workdps(25):
+        right = mp.sqrt(2) * mp.quad(lambda u: 2 * mp.exp(-u * u), [0, mp.inf]) if end is None else end
+        assert abs(found.problem.time - right) <= found.problem.error <= 1e-8
+    assert found.trajectory is not None
+    assert found.trajectory.time.tolist() == [0.0, 1.0]
+    if place is not None:
+        own = found.trajectory.columns["p.position"]
+        assert abs(own.values[1, 0] - float(place(mp.mpf(1)))) <= own.error + 2.0**-52

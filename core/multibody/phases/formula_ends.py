@@ -1,0 +1,72 @@
+"""Where a motion cannot go on because a formula has no value: the root of what becomes negative, a division by zero."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from core.arrays import Floats
+from core.formulas import Node
+from core.multibody.contacts.contact_states import Problem
+from core.multibody.laws.law import Law
+from core.multibody.laws.samples import values_of
+from core.multibody.motion.numerical import BEFORE_SINGULAR
+from core.multibody.phases.phase import Phase
+
+VANISHED = 2.0**-16
+"""Share of its terms below which an argument is about to vanish so shortly before a motion ends."""
+_ONE = Node("number", "1")
+
+
+def formula_that_ends(phase: Phase, late: float) -> Problem | None:
+    """Return the formula that leaves its domain where the motion of a phase ends, None where another thing ends it.
+
+    Parameters
+    ----------
+    late : float
+        Time from the start of the phase to that end (s).
+    """
+    whole = phase.models[0].whole
+    laws = [law for law in phase.tables[0].table.acting if law.inputs]
+    if not laws:
+        return None
+    q, v = whole.in_pairs(np.array([late * BEFORE_SINGULAR]))
+    for law in laws:
+        for argument in _arguments(law.root):
+            value, size = values_of(replace(law, root=argument, push={}), q, v)
+            if abs(float(value[0])) <= VANISHED * float(size[0]):
+                return Problem(
+                    "formula",
+                    f"a formula of {law.name} has no value from here on: it divides by zero, or leaves the domain of a "
+                    f"function, where {_state(law, q, v)}",
+                    (law.name,),
+                    decided_by="a formula that has a value there",
+                )
+    return None
+
+
+def _arguments(node: Node) -> Iterator[Node]:
+    """Yield what is zero where a formula leaves its domain."""
+    match node.kind:
+        case "sqrt" | "log":
+            yield node.inner[0]
+        case "/":
+            yield node.inner[1]
+        case "^":
+            # A whole power of zero is told from others by its value alone, which goes on.
+            yield node.inner[0]
+        case "asin" | "acos":
+            yield Node("-", inner=(_ONE, Node("*", inner=(node.inner[0], node.inner[0]))))
+    for inner in node.inner:
+        yield from _arguments(inner)
+
+
+def _state(law: Law, q: Floats, v: Floats) -> str:
+    """Return the names of a formula with their values."""
+    values = {
+        name: float(values_of(replace(law, root=Node("name", name), push={}), q, v)[0][0])
+        for name in sorted(law.inputs)
+    }
+    return ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
