@@ -123,6 +123,45 @@ def test_a_range_without_a_root_has_the_nearest_miss() -> None:
     assert answer["nearest"]["figure"] > 3.0
 
 
+STONE: Body = {
+    "path": "/v1/scenes",
+    "request": {
+        "gravity": [0, -9.81],
+        "let": {"h": 1.0},
+        "bodies": {"stone": {"mass": 1, "at": [0, "h"]}},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "stone", "on": {"at": [0, 0]}, "restitution": 0.5}
+        ],
+        "times": [0.5],
+        "outputs": ["energy"],
+    },
+}
+
+
+def test_an_event_is_a_time_a_count_and_something_that_happens() -> None:
+    """Half g t^2: a stone falls 1.22625 m in half a second."""
+    height: Body = {"pointer": "/let/h", "between": [0.5, 2.0]}
+    touch: Body = {"kind": "touch", "name": "floor"}
+    (one,) = found(STONE, height, {"figure": {"event": touch}, "equals": 0.4})["solutions"]
+    assert abs(one["values"]["/let/h"] - 9.81 * 0.08) <= one["errors"]["/let/h"] < 1e-14
+    happens = found(STONE, height, {"event": touch, "happens": True})
+    (one,) = happens["solutions"]
+    assert (one["kind"], one["below"], one["above"]) == ("border", True, False)
+    assert abs(one["values"]["/let/h"] - 1.22625) <= one["errors"]["/let/h"]
+    assert happens["ranges"] == [[0.5, one["values"]["/let/h"]]]
+    counted = found(STONE, height, {"figure": {"count": "/events"}, "changes": True})["solutions"]
+    assert abs(counted[-1]["values"]["/let/h"] - 1.22625) <= counted[-1]["errors"]["/let/h"]
+
+
+def test_an_event_that_never_happens_is_told_with_those_that_do() -> None:
+    until = {"event": {"kind": "touch", "name": "flor"}, "happens": True}
+    answer = found(STONE, {"pointer": "/let/h", "between": [0.5, 0.6]}, until)
+    assert (answer["solutions"], answer["ranges"]) == ([], [])
+    (warning,) = answer["warnings"]
+    assert warning["code"] == "event-does-not-happen"
+    assert "touch floor" in warning["detail"]
+
+
 def test_it_is_planned_and_graded_and_swept() -> None:
     request = {"question": FLIP, "vary": MIDDLE, "until": EIGHT}
     plan = answered("/v1/plan", {"path": PATH, "request": request})

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi, sqrt
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -102,3 +104,32 @@ def test_the_errors_of_figures_are_those_that_the_source_bounds() -> None:
     assert period is not None
     assert (rate.error, rate.how) == (1e-6, "a bound")
     assert period.how.startswith("estimate")
+
+
+class Bounded(Pendulum):
+    """Answers with figures whose bounds stand in every form that answers have."""
+
+    def answer(self, request: str) -> Mapping[str, Any]:
+        return super().answer(request) | {
+            "extremes": [
+                {"least": -1.0, "largest": 2.0, "error": 1e-12, "errors": {"least_time": 1e-6}, "least_time": 3.0}
+            ],
+            "equilibria": [{"positions": {"bob": (0.3, -0.4)}, "errors": {"positions": {"bob": 1e-13}}}],
+            "events": [{"kind": "touch", "time": 0.5, "error": 1e-14, "errors": {"energy_loss": None}}],
+        }
+
+
+@pytest.mark.parametrize(
+    ("path", "error"),
+    [
+        (("extremes", 0, "least"), 1e-12),
+        (("extremes", 0, "largest"), 1e-12),
+        (("extremes", 0, "least_time"), 1e-6),
+        (("equilibria", 0, "positions", "bob", 1), 1e-13),
+        (("events", 0, "time"), 1e-14),
+    ],
+)
+def test_bounds_are_found_beside_figures_and_in_the_objects_around_them(path: Any, error: float) -> None:
+    reference = GradedQuestion(Bounded(), REQUEST, {}).reference(path)
+    assert reference is not None
+    assert (reference.error, reference.how) == (error, "bound that the answer states")
