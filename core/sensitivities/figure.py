@@ -16,6 +16,8 @@ from core.errors import InvalidParameter, Path, pointer_of
 EVENTS: Path = ("events",)
 """Where answers have what happens."""
 
+LONGEST_POINTER = 300
+
 FORM = 'be a JSON pointer into the answer, {"event": {"kind", "name", "nth"}} or {"count": pointer}'
 
 
@@ -145,6 +147,8 @@ def figure_of(given: Any, path: Path) -> Figure:
 def _steps(pointer: Any, path: Path) -> Path:
     if not isinstance(pointer, str):
         raise InvalidParameter(path, FORM)
+    if len(pointer) > LONGEST_POINTER:
+        raise InvalidParameter(path, f"have at most {LONGEST_POINTER} characters")
     try:
         return steps_of(pointer)
     except InvalidParameter as fault:

@@ -82,7 +82,8 @@ def _checked(output: Any, index: int) -> SensitivitiesQuestion:
         return SensitivitiesOutput.model_validate(output, strict=True).sensitivities
     except ValidationError as error:
         found: list[Any] = [
-            {name: fault.get(name) for name in ("type", "input", "ctx")} | {"loc": ("outputs", index, *fault["loc"])}
+            {name: fault[name] for name in ("type", "input", "ctx") if name in fault}
+            | {"loc": ("outputs", index, *fault["loc"])}
             for fault in error.errors()
         ]
         raise ValidationError.from_exception_data(error.title, found) from None

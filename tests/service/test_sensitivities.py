@@ -87,6 +87,10 @@ async def test_questions_of_every_kind(path: str, request_: dict[str, Any], of: 
         ([wanted([{"event": {}}], ["/let/g"])], "/outputs/0/sensitivities/of/0/event", "kind"),
         (["trajectory", wanted(["/events/0/time"], ["/let/h"])], "/outputs/1/sensitivities/to/0", "number of the"),
         ([{"sensitivities": []}], "/outputs/0/sensitivities", "object"),
+        ([wanted(["/energy/total"], [3])], "/outputs/0/sensitivities/to/0", "string"),
+        ([{"sensitivities": {"of": ["/energy/total"]}}], "/outputs/0/sensitivities/to", "required"),
+        ([wanted(["/energy/total"], 30 * ["/let/g"])], "/outputs/0/sensitivities/to", "at most 20"),
+        ([wanted(["/energy/total"], ["/let/g"]) | {"when": {}}], "/outputs/0/when", "not known"),
     ],
 )
 async def test_what_cannot_be_differentiated_is_refused(outputs: Any, pointer: str, detail: str) -> None:

@@ -56,6 +56,7 @@ def test_counts_do_not_change_by_little() -> None:
         ({"event": {"kind": "touch", "name": 1}}, ("of", "event", "name")),
         ({"count": 3}, ("of", "count")),
         ({"sum": "/a"}, ("of",)),
+        ("/" + 300 * "a", ("of",)),
         (3, ("of",)),
     ],
 )
