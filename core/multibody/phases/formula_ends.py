@@ -16,7 +16,7 @@ from core.multibody.motion.numerical import BEFORE_SINGULAR
 from core.multibody.phases.phase import Phase
 
 VANISHED = 2.0**-16
-"""Share of its terms below which an argument is about to vanish so shortly before a motion ends."""
+"""Share of its terms, then or at the start of a phase, below which an argument vanishes where a motion ends."""
 _ONE = Node("number", "1")
 
 
@@ -32,11 +32,11 @@ def formula_that_ends(phase: Phase, late: float) -> Problem | None:
     laws = [law for law in phase.tables[0].table.acting if law.inputs]
     if not laws:
         return None
-    q, v = whole.in_pairs(np.array([late * BEFORE_SINGULAR]))
+    q, v = whole.in_pairs(np.array([0.0, late * BEFORE_SINGULAR]))
     for law in laws:
         for argument in _arguments(law.root):
             value, size = values_of(replace(law, root=argument, push={}), q, v)
-            if abs(float(value[0])) <= VANISHED * float(size[0]):
+            if abs(value[1]) <= VANISHED * np.max(size):
                 return Problem(
                     "formula",
                     f"a formula of {law.name} has no value from here on: it divides by zero, or leaves the domain of a "
@@ -66,7 +66,7 @@ def _arguments(node: Node) -> Iterator[Node]:
 def _state(law: Law, q: Floats, v: Floats) -> str:
     """Return the names of a formula with their values."""
     values = {
-        name: float(values_of(replace(law, root=Node("name", name), push={}), q, v)[0][0])
+        name: float(values_of(replace(law, root=Node("name", name), push={}), q, v)[0][-1])
         for name in sorted(law.inputs)
     }
     return ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
