@@ -58,11 +58,12 @@ def _tidy_field(name: str, field: dict[str, Any]) -> None:
     members = field.get("anyOf", [field])
     for member in members:
         kind, items = member.get("type"), member.get("items", {})
+        entries = items.get("anyOf") or items.get("oneOf") or [items]
+        named = [entry for entry in entries if "enum" in entry or (len(entries) > 1 and entry.get("type") == "object")]
         if kind == "object" or "enum" in member:
             member["title"] = title
-        elif kind == "array" and any("enum" in one for one in items.get("anyOf", [items])):
-            named_values = next(one for one in items.get("anyOf", [items]) if "enum" in one)
-            named_values["title"] = title.removesuffix("s")
+        elif kind == "array" and named:
+            named[0].setdefault("title", title.removesuffix("s"))
         elif kind == "array" and {"type": "null"} not in members and len(members) > 1:
             member["title"] = f"{title}List"
     plain = members[0].get("type") in ("number", "integer", "string", "array") and "enum" not in members[0]

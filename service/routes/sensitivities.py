@@ -40,7 +40,7 @@ class FigureSensitivity(View):
 
     of: str | dict[str, Any] = Field(description="As in the request.")
     to: str = Field(description="As in the request.")
-    value: Annotated[float | list[float] | list[list[float]], OWN_UNIT] = Field(description="Of the figure's shape.")
+    value: Annotated[float | list[float | list[float]], OWN_UNIT] = Field(description="Of the figure's shape.")
     error: Annotated[float, OWN_UNIT] = Field(
         description="Estimate of the largest error of any entry: what extrapolation leaves, and the error of the "
         "figure divided by the step."
