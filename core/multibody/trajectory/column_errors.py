@@ -9,6 +9,7 @@ import numpy as np
 
 from core.arrays import Floats, largest_magnitude, row_lengths
 from core.errors import AccuracyUnreachable, NotApplicable
+from core.multibody.search.bands import FLOOR
 from core.systems.trajectory import Column
 
 PLACES_BETWEEN = np.arange(1, 18) * ((5.0**0.5 - 1.0) / 2.0) % 1.0
@@ -49,14 +50,14 @@ def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
 
     That is a scale that is known already, as of what is small at all samples, or the largest sample. What is zero by
     symmetry has no scale of its own. Angles that are zero within their error are measured against one radian, and their
-    rates against the largest speed over the largest distance.
+    rates against the largest speed over the largest distance; so are those that are no more than rounding of these.
     """
     largest, unknown = _sizes(columns)
     for column in columns.values():
         largest[column.unit] = max(largest[column.unit], column.scale or 0.0)
     away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
     for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
-        if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
+        if largest.get(unit, 0.0) <= max(unknown.get(unit, 0.0), FLOOR * scale):
             largest[unit] = max(largest.get(unit, 0.0), scale)
     # Momenta and energies that are zero within their error have no scale; what they follow from has.
     for unit in ("kg m/s", "kg m^2/s", "J"):
