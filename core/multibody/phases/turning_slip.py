@@ -43,8 +43,9 @@ _BITS = 256
 _MOST_STEPS = 250
 """Steps that one phase of turning slip may take."""
 
-_PART = 0.5
-"""Share of the time in which slip could end that a step takes at most: the series diverges there."""
+_PART = 0.75
+"""Share of the time in which slip could end that a step takes at most: the series diverges there, and beside it the
+last terms, by which steps are chosen, are a quarter of what is left out."""
 _NO_REST = 2.0**-30
 """Share of a step that is so little that the next one is followed from before its start."""
 _LONGEST = 1e6
@@ -148,7 +149,7 @@ class TurningSlip(Motion):
         times = [arb(_LONGEST)]
         for row in table.rows:
             if row.slide is not None:
-                slips, gains = table.slip_of(row), [motion.of_rates(line)[1] for line in row.slide[1:]]
+                slips, gains = table.slip_of(row), _gains(motion, row)
                 fast, change = (sum((x * x for x in vector), ZERO).sqrt() for vector in (slips, gains))
                 # What begins to slide has no slip yet.
                 if change > 0 and fast > 0:
@@ -164,7 +165,7 @@ class TurningSlip(Motion):
             size = (x * x + y * y).sqrt()
             if not size > 0:
                 continue
-            gains = [motion.of_rates(line)[1] for line in row.slide[1:]]
+            gains = _gains(motion, row)
             loss = -(x * gains[0] + y * gains[1]) / size
             if float(size) < ENDED * fastest["m"] and loss > 0:
                 return arb((size / loss).mid()), row
@@ -193,6 +194,12 @@ class TurningSlip(Motion):
                 for i, series in enumerate(run.steps[k].places):
                     q[s, i], v[s, i] = pair(value(series, late), 0), pair(value(slope(series), late), 0)
         return q, v
+
+
+def _gains(motion: Expansion, row: Row) -> list[Ball]:
+    """Return the rates of change of both components of a slip, whose lines are constant."""
+    assert row.slide is not None
+    return [sum((2 * poly[()] * motion.places[j][2] for j, poly in line.items()), ZERO) for line in row.slide[1:]]
 
 
 def _moved(series: Sequence[Ball], later: arb_poly) -> list[Ball]:
