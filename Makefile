@@ -127,6 +127,14 @@ $(BROWSER)/made: tests/browser/requirements.txt
 	$(BROWSER)/bin/python -m pip install --quiet --disable-pip-version-check -r $<
 	@touch $@
 
+# Types of the pages' scripts, which JSDoc states; needs npm and its registry.
+.PHONY: types
+
+types:
+	rm -rf build/types && mkdir -p build/types
+	cp tests/browser/types/package.json tests/browser/types/tsconfig.json build/types
+	cd build/types && npm install --no-audit --no-fund --silent && npx tsc -p tsconfig.json
+
 # The documentation as a static site in build/site/html, which loads nothing from elsewhere.
 SITE := .venv-site
 

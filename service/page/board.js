@@ -12,13 +12,45 @@ import { drawFace } from "./plane_kinds.js";
 import { Drawing } from "./plane_drawing.js";
 import { add, norm, sub } from "./vectors.js";
 
+const SPACE_PIXEL = 0.01;
+/** Metres by which lengths in space are rounded as those of a pixel are in the plane. */
+
 const HANDLE = 14, MOVED = 4;
 /** Pixels within which a handle is caught, and beyond which a press is a drag. */
 
 export class Board {
-  /** `page` has `doc`, `view`, `say(words)`, `ready()` which is false for scenes that cannot be edited here, and `start()`, which shows the start. */
-  constructor(page) {
-    Object.assign(this, page, { tool: null, gesture: null, stops: [], hover: null, runs: 0 });
+  /**
+   * `page` has the document and the view, and says what it does about them: `ready()` is false for scenes that cannot be edited here,
+   * `start()` shows the start, `dropped(words)` takes what was let go.
+   * @param {{doc: import("./scene_document.js").SceneDocument, view: import("./plane_view.js").PlaneView, say: (words: string) => void,
+   *   ready: () => boolean, atStart: () => boolean, start: () => void, selected: () => void, dropped: (words: () => string) => void,
+   *   rename: (id: string, event: MouseEvent) => void}} page
+   */
+  constructor({ doc, view, say, ready, atStart, start, selected, dropped, rename }) {
+    this.doc = doc;
+    this.view = view;
+    this.say = say;
+    this.ready = ready;
+    this.atStart = atStart;
+    this.start = start;
+    this.selected = selected;
+    this.dropped = dropped;
+    this.rename = rename;
+    /** @type {string | null} */
+    this.tool = null;
+    /** @type {any} What the pointer does from its press to its release. */
+    this.gesture = null;
+    /** @type {number[][]} */
+    this.stops = [];
+    /** @type {number[] | null} */
+    this.hover = null;
+    /** @type {string[]} Bodies that were moved last. */
+    this.held = [];
+    /** @type {any} The face on which a body was put. */
+    this.touched = null;
+    this.runs = 0;
+    /** @type {(tool: string | null) => void} */
+    this.toolChanged = () => {};
     const { canvas } = this.view;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
@@ -42,6 +74,17 @@ export class Board {
 
   get parts() {
     return partsOf(this.doc.scene.value, this.doc.waiting);
+  }
+
+  /** Whether the scene is one in space. */
+  get space() {
+    const { value } = this.doc.scene;
+    return value.gravity?.length === 3 || this.model.space;
+  }
+
+  /** Metres of a pixel; of a scene in space, which is seen from any side, a fixed length. */
+  get px() {
+    return this.space ? SPACE_PIXEL : this.view.px;
   }
 
   pointOf({ clientX, clientY }) {
@@ -68,7 +111,7 @@ export class Board {
     this.tool = tool;
     this.stops = [];
     this.view.canvas.style.cursor = tool ? "crosshair" : "";
-    this.toolChanged?.(tool);
+    this.toolChanged(tool);
     this.view.render();
   }
 
@@ -179,12 +222,21 @@ export class Board {
 
   /** Where a part is put that has no place yet: in the middle of what is seen, beside what is there. */
   freePoint(below) {
+    if (this.space) return this.freePlace(below);
     const { view } = this, step = gridStep(view.px), half = view.canvas.clientHeight / 2;
     const middle = view.pointAt([view.canvas.clientWidth / 2, below ? 1.7 * half : half]).map((x) => toGrid(x, step));
     const taken = (p) => this.model.bodies.some((body) => norm(sub(body.at, p)) < 40 * view.px);
     let point = middle;
     for (let k = 1; !below && taken(point); k++) point = [middle[0] + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * toGrid(70 * view.px, step), middle[1]].map((x) => toGrid(x, step));
     return point;
+  }
+
+  /** In space: beside what is there, on the level of 0.5 m; a plane through the origin. */
+  freePlace(below) {
+    const taken = (p) => this.model.bodies.some((body) => body.at.length === 3 && norm(sub(body.at, p)) < 0.5);
+    let k = 0;
+    while (!below && taken([0.7 * k, 0, 0.5])) k = k > 0 ? -k : 1 - k;
+    return below ? [0, 0, 0] : [Number((0.7 * k).toPrecision(6)), 0, 0.5];
   }
 
   /** Points of the ground that go along: the axle of a wheel, the rail of a slider; not the point that a rod hangs from. */
@@ -287,7 +339,7 @@ export class Board {
 
   /** Put a part of the palette at a point. */
   place(tool, point) {
-    const { point: at } = snapped(this.model, point, this.view.px);
+    const { point: at } = this.space ? { point } : snapped(this.model, point, this.view.px);
     this.made((BODIES[tool] ? placeBody : placeFace)(tool, this.doc, at, this.view.px));
   }
 
@@ -309,7 +361,7 @@ export class Board {
   double(event) {
     if (this.tool === "string") return this.finish();
     const id = this.view.partAt(this.pointOf(event));
-    if (id && this.ready()) this.rename?.(id, event);
+    if (id && this.ready()) this.rename(id, event);
   }
 
   wheel(event) {
@@ -324,8 +376,7 @@ export class Board {
     const { view, doc } = this, px = view.px, { clientWidth: w, clientHeight: h } = view.canvas;
     const d = new Drawing(px, { low: view.pointAt([0, h]), high: view.pointAt([w, 0]) });
     if (!doc.sound || !this.ready()) return d.items;
-    for (const face of facesOf(doc.scene.value, doc.waiting)) {
-      if (this.model.space) break;
+    for (const face of this.space ? [] : facesOf(doc.scene.value, doc.waiting)) {
       d.of(face.id, () => { if (!face.members.length || doc.selection.has(face.id)) drawFace(d, this.model, this.model.face(face.on), null); });
     }
     if (this.atStart()) {

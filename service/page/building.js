@@ -21,9 +21,11 @@ export const sizeAt = (px) => {
 
 /** The places of a body that touch faces: corners and ends by name, or the body itself. */
 export function touchingPlaces(name, described, model) {
-  const body = model.readBody(name, described), outline = outlineOf(body, model.numbers);
-  if (outline?.radius || !outline || described.shape) return [name];
-  return Object.keys(described.places || {}).map((place) => `${name}.${place}`);
+  const body = model.readBody(name, described);
+  if (described.at?.length === 3) return body.radius || !body.rigid ? [name] : Object.keys(described.places || {}).map((place) => `${name}.${place}`);
+  const outline = outlineOf(body, model.numbers);
+  if (outline?.radius || !outline || !Object.keys(described.places || {}).length) return [name];
+  return Object.keys(described.places).map((place) => `${name}.${place}`);
 }
 
 /** With contacts of a body on a face, where it has none yet. */
@@ -45,6 +47,10 @@ const isStraight = (on) => on.radius === undefined && on.curvature === undefined
 
 /** Whether all of a body lies on the free side of a face, or on it. */
 function above(model, name, on, slack) {
+  if (model.space) {
+    const { point, normal } = model.face(on), body = model.byName[name];
+    return dot(sub(body.at, point), normal) - (body.radius ?? 0) > -slack;
+  }
   const body = model.byName[name], { point, normal } = model.face(on), outline = outlineOf(body, model.numbers);
   const corners = outline?.corners ?? outline?.bar ?? [[0, 0]], rim = outline?.radius ?? 0;
   return corners.every((p) => dot(sub(add(body.at, turned(body.angle, p)), point), normal) - rim > -slack);
@@ -55,7 +61,7 @@ export function placeBody(kind, doc, point, px) {
   const tool = BODIES[kind], model = new SceneModel(doc.scene.value, null), size = sizeAt(px);
   const body = { ...tool.make(size), at: point.map(tidy) };
   const trial = model.readBody("new", body);
-  const landed = tool.held && kind !== "wedge" ? null : ontoFace(model, doc.scene.value, doc.waiting, { ...trial, angle: 0 }, point, px);
+  const landed = model.space || point.length === 3 || (tool.held && kind !== "wedge") ? null : ontoFace(model, doc.scene.value, doc.waiting, { ...trial, angle: 0 }, point, px);
   if (landed) {
     body.at = landed.at.map((x) => Number(x.toPrecision(15)));
     if (Math.abs(landed.angle) > 1e-12) body.angle = { degrees: tidy((landed.angle * 180) / Math.PI) };
@@ -106,7 +112,7 @@ export function connect(kind, doc, references, { scene = doc.scene, vector = nul
   // The ground comes second.
   const ordered = tool.ends === 2 && held[0] === null ? [second, first] : references;
   const rims = tool.rims ? ordered.map((r) => bodyOf(r, bodies)) : ordered;
-  const connection = tool.make(rims, vector);
+  const connection = tool.make(rims, vector, scene.value.gravity?.length === 3);
   if (tool.rigid && bodies[held[0]] && isPoint(bodies[held[0]])) return { problem: `A motor turns a body that has a size; ${held[0]} is a point` };
   if (kind === "string") {
     const sides = sidesOf(new SceneModel(scene.value, null), references);

@@ -24,7 +24,13 @@ export function columnGroups(columns) {
 export class CurveChoice {
   /** `chart` draws against time; `player` has the time that is marked. */
   constructor(chart, player) {
-    Object.assign(this, { chart, groups: new Map(), time: [], other: null });
+    this.chart = chart;
+    /** @type {Map<string, any[]>} */
+    this.groups = new Map();
+    /** @type {number[]} */
+    this.time = [];
+    /** @type {any} */
+    this.other = null;
     this.plane = new PlaneChart($("plane-chart"), player, 300);
     for (const name of ["curves", "against", "table-shown"]) $(name).onchange = () => this.show();
   }

@@ -51,7 +51,7 @@ new MutationObserver(mend).observe(document.getElementById("reference"), { child
 
 // Read here: the viewer would read it as YAML.
 const spec = await (await fetch("/openapi.json")).json();
-window.SwaggerUIBundle({
+/** @type {any} */ (window).SwaggerUIBundle({
   spec,
   dom_id: "#reference",
   deepLinking: true,

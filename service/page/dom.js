@@ -1,8 +1,18 @@
 // Small helpers for elements and numbers.
 
+/**
+ * The element with this id; which kind it is, the page says.
+ * @type {(id: string) => any}
+ */
 export const $ = (id) => document.getElementById(id);
 
-/** Make an element with properties and children; `aria-...`, `role` and the like are set as attributes. */
+/**
+ * Make an element with properties and children; `aria-...`, `role` and the like are set as attributes.
+ * @param {string} tag
+ * @param {Record<string, any>} properties
+ * @param {...(Node | string)} children
+ * @returns {any}
+ */
 export function make(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {

@@ -21,7 +21,7 @@ export class Gallery {
   fill(scenes) {
     this.cards = scenes.map((scene) => this.card(scene));
     // Scenes that cannot be built upon come last.
-    const topics = Map.groupBy([...this.cards].sort((p, q) => isNamed(p.scene.name) - isNamed(q.scene.name)), ({ scene }) => scene.topic);
+    const topics = Map.groupBy([...this.cards].sort((p, q) => Number(isNamed(p.scene.name)) - Number(isNamed(q.scene.name))), ({ scene }) => scene.topic);
     this.sections = [...topics].map(([topic, cards]) => {
       const section = make("section", { "aria-label": topic }, make("h3", { textContent: topic }), make("ul", { className: "cards" }, ...cards.map(({ item }) => item)));
       return { section, cards };

@@ -1,4 +1,5 @@
 // The handles of what is selected: where they are, and what the scene becomes when one is dragged to a point.
+import { corners } from "./new_parts.js";
 import { outlineOf, homogeneousInertia } from "./outlines.js";
 import { tidy, turnedTo, withFace } from "./scene_changes.js";
 import { pointerTo } from "./scene_text.js";
@@ -14,7 +15,16 @@ const onGrid = (v, step) => v.map((x) => toGrid(x, step));
 /** A round number that vectors of this size are drawn by, so that they fit the picture. */
 const roundScale = (size) => (size > 0 ? 10 ** Math.ceil(Math.log10(size / 3)) : 1);
 
-/** Handles of a body, connection or face, `{name, at, from?, words, drag(point) -> scene, live?}`; `from` is what it is tied to by a line. */
+/**
+ * A handle: `from` is what it is tied to by a line, `drag` gives the scene that it makes, `say` what it has come to.
+ * @typedef {{name: string, at: number[], from?: number[], arrow?: boolean, words: string, drag: (point: number[]) => any,
+ *   face?: (point: number[]) => any, say: (scene: any) => string}} Handle
+ */
+
+/**
+ * Handles of a body, connection or face.
+ * @returns {Handle[]}
+ */
 export function handlesOf(part, { scene, model, px }) {
   if (part.kind === "body") return ofBody(part, scene, model, px);
   if (part.kind === "face") return ofFace(part, scene, model, px);
@@ -30,7 +40,7 @@ function ofBody({ name }, scene, model, px) {
   const handles = [];
   if (body.mass) {
     handles.push({
-      name: "velocity", at: velocityAt, from: body.at, arrow: norm(velocity) > 0, words: "velocity", held: { body: name },
+      name: "velocity", at: velocityAt, from: body.at, arrow: norm(velocity) > 0, words: "velocity",
       drag(point) {
         const v = onGrid(scaled(sub(point, body.at), 1 / k), 0.1 * scale);
         return norm(v) ? scene.with(`${pointer}/velocity`, v) : scene.without(`${pointer}/velocity`);
@@ -66,8 +76,8 @@ function sizes(name, body, outline, scene, model, px) {
       name: "size", at: add(body.at, turned(body.angle, [x, y])), words: "size",
       drag(point) {
         const [w, h] = turned(-body.angle, sub(point, body.at)).map((d) => Math.max(step / 2, toGrid(Math.abs(d), step / 2)));
-        const corner = { "lower-left": [-w, -h], "lower-right": [w, -h], "upper-right": [w, h], "upper-left": [-w, h] };
-        return resized(Object.entries(corner).reduce((s, [place, at]) => s.with(`${pointer}/places/${place}`, at), scene));
+        const sized = scene.at(`${pointer}/shape`) ? scene.with(`${pointer}/shape/width`, tidy(2 * w)).with(`${pointer}/shape/height`, tidy(2 * h)) : scene;
+        return resized(withCorners(sized, pointer, 2 * w, 2 * h));
       },
       say: (s) => { const [w, h] = s.at(`${pointer}/places/upper-right`); return `width ${tidy(2 * w)} m, height ${tidy(2 * h)} m`; },
     }];
@@ -89,7 +99,10 @@ function sizes(name, body, outline, scene, model, px) {
   }));
 }
 
-const described4 = (body) => ["lower-left", "lower-right", "upper-right", "upper-left"].every((name) => body.places?.[name]);
+/** With the named corners of a box where its width and height have them. */
+export const withCorners = (scene, pointer, width, height) => Object.entries(corners(width, height)).reduce((s, [place, at]) => s.with(`${pointer}/places/${place}`, at.map(tidy)), scene);
+
+export const described4 = (body) => ["lower-left", "lower-right", "upper-right", "upper-left"].every((name) => body.places?.[name]);
 
 /** Whether the inertia of a body is that of a homogeneous one of its outline. */
 export function isHomogeneous(scene, name, model) {

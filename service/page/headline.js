@@ -11,7 +11,7 @@ const EVENTS = {
 const DIGITS = 3, SAME = 1e-9;
 /** Digits of numbers in sentences; relative difference below which two are called equal. */
 
-export const sayEvent = (event) => `${event.name} ${EVENTS[event.kind] || event.kind.replaceAll("-", " ")}`.trim();
+export const sayEvent = (event) => (event.kind === "singular" && !event.name ? "comes to a singular place" : `${event.name} ${EVENTS[event.kind] || event.kind.replaceAll("-", " ")}`.trim());
 
 const seconds = (t) => `${written(t, DIGITS)} s`;
 const listed = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`);
@@ -64,6 +64,8 @@ function partInWords(part, answer, names, hangs) {
   if (part.period && part.precession) return `${sentence(subject(names))} swing${many ? "" : "s"} with a period of ${seconds(part.period)}, and go${many ? "" : "es"} round meanwhile.`;
   if (part.period) return `${sentence(subject(names))} ${hangs ? `swing${many ? "" : "s"} with a period of` : `repeat${many ? "" : "s"} the motion every`} ${seconds(part.period)}.`;
   if (part.name === "free rotation") return `${sentence(subject(names))} tumble${many ? "" : "s"} freely.`;
+  const first = many ? null : answer.accelerations?.[names[0]]?.linear;
+  if (first && norm(first) > 0 && part.degrees_of_freedom === 1) return `${sentence(names[0])} is accelerated ${direction(first)}, by ${written(norm(first), DIGITS)} m/s² at the start.`;
   return `${sentence(subject(names))} move${many ? "" : "s"} in ${part.degrees_of_freedom} degree${part.degrees_of_freedom === 1 ? "" : "s"} of freedom.`;
 }
 
@@ -84,7 +86,7 @@ function eventInWords(event, model) {
     return `${sentence(c.place.split(".")[0])} ${ON_FACE[event.kind]} ${below}`;
   }
   if (c?.kind === "contact" && typeof c.b === "string" && OF_TWO[event.kind]) return `${sentence(c.a.split(".")[0])} and ${c.b.split(".")[0]} ${OF_TWO[event.kind]}`;
-  return sentence(sayEvent(event));
+  return event.name ? sentence(sayEvent(event)) : `The motion ${sayEvent(event)}`;
 }
 
 /** A body that rests on two corners at the start, of which one leaves at once. */

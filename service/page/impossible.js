@@ -7,6 +7,7 @@ import { faceName, facePart, labelOf, onGround } from "./scene_parts.js";
 const metres = (text) => `${written(Number(text), 3)} m`;
 
 /** How the service says it, and what is seen: the second gets the connection, its name and what was caught. */
+/** @type {[RegExp, (c: any, name: string, ...caught: string[]) => string][]} */
 const SAID = [
   [/must agree with the positions: .* misses them by ([\d.e+-]+)/, (c, name, by) => `${name} misses: what it holds together is ${metres(by)} apart.`],
   [/must be ([\d.e+-]+) m, as the places are apart/, (c, name, apart) => (c?.kind === "string" ? `${name} is too short: its ends are ${metres(apart)} apart, and its length is ${c.length} m.` : `${name} has the length ${c?.length} m, and its ends are ${metres(apart)} apart.`)],

@@ -5,6 +5,7 @@ import { shownNumber, typedNumber } from "./number_text.js";
 import { BODY_FIELDS, CONNECTION_FIELDS, FACE_FIELDS, ON_FACE, SCENE_FIELDS, TOUCH_FIELDS } from "./part_fields.js";
 import { inline, pointerTo } from "./scene_text.js";
 import { placesOf } from "./scene_parts.js";
+import { described4, withCorners } from "./handles.js";
 import { withFace } from "./scene_changes.js";
 
 const AXES = ["x", "y", "z"], SIDES = ["left", "right", "above", "below"];
@@ -12,8 +13,12 @@ let ids = 0;
 
 export class Inspector {
   /** `page` has `doc`, `board`, `edit(words, scene, run)` for a change, `rename(id, name)` which returns a problem in words or nothing. */
-  constructor(panel, page) {
-    Object.assign(this, { panel, ...page });
+  constructor(panel, { doc, board, edit, rename }) {
+    this.panel = panel;
+    this.doc = doc;
+    this.board = board;
+    this.edit = edit;
+    this.rename = rename;
   }
 
   /** Show what is selected; while a field of it is being edited, only what the field does not show changes. */
@@ -22,7 +27,7 @@ export class Inspector {
     if (!doc.sound) return;
     const parts = this.board.parts.filter(({ id }) => doc.selection.has(id));
     const key = parts.map(({ id }) => id).join() + Object.keys(doc.scene.at(parts[0]?.pointer ?? "") ?? {}).join();
-    const focused = this.panel.contains(document.activeElement) && this.key === key ? document.activeElement.dataset.pointer : null;
+    const active = /** @type {HTMLElement | null} */ (document.activeElement), focused = this.panel.contains(active) && this.key === key ? active.dataset.pointer : null;
     this.key = key;
     this.panel.replaceChildren(...this.content(parts));
     if (focused) this.panel.querySelector(`[data-pointer="${CSS.escape(focused)}"]`)?.focus();
@@ -49,8 +54,13 @@ export class Inspector {
     const body = this.doc.scene.at(pointer), space = this.doc.scene.value.gravity?.length === 3 || body.at?.length === 3;
     const rigid = ["inertia", "moments", "tensor", "body", "shape"].some((field) => body[field] !== undefined);
     const fields = BODY_FIELDS.filter((f) => (space ? !f.plane : !f.space) && (rigid || !f.turns) && (rigid || !["radius", "inertia"].includes(f.name) || body[f.name] !== undefined));
+    const sized = (words, next, run) => {
+      const { width, height, kind } = next.at(`${pointer}/shape`);
+      this.edit(words, kind === "box" && described4(body) && typeof width === "number" && typeof height === "number" ? withCorners(next, pointer, width, height) : next, run);
+    };
+    const sizes = Object.keys(body.shape || {}).filter((name) => !["kind", "at", "corners", "semi_axes"].includes(name)).map((name) => this.number({ words: `${name} of the ${body.shape.kind}`.replace(/^./, (c) => c.toUpperCase()), unit: "m" }, `${pointer}/shape/${name}`, sized));
     const places = Object.keys(body.places || {}).map((place) => this.vector({ words: `Place ${place}`, unit: "m" }, `${pointer}${pointerTo("places", place)}`));
-    return [this.name(id, name), ...fields.map((f) => this.field(f, pointer)), ...places];
+    return [this.name(id, name), ...fields.map((f) => this.field(f, pointer)), ...sizes, ...places];
   }
 
   ofFace(face) {

@@ -12,7 +12,15 @@ const NAMES = {
 export class Integrator {
   /** `onRun(samples or null)` shows what the method makes of the motion, `onState` tells that the choice has changed. */
   constructor(onRun, onState) {
-    Object.assign(this, { onRun, onState, kind: "closed-form", setting: null, methods: new Map(), question: null });
+    this.onRun = onRun;
+    this.onState = onState;
+    this.kind = "closed-form";
+    /** @type {number | null} */
+    this.setting = null;
+    /** @type {Map<string, any>} */
+    this.methods = new Map();
+    /** @type {any} */
+    this.question = null;
     this.worker = new Worker($("progress"));
     $("method").onchange = () => this.choose($("method").value, null);
     $("setting").oninput = () => {

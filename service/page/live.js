@@ -6,7 +6,13 @@ const PATIENCE = 400;
 export class Live {
   /** `work(question)` asks and shows; `stop()` gives up what it waits for. */
   constructor(work, stop) {
-    Object.assign(this, { work, stop, running: null, next: null });
+    this.work = work;
+    this.stop = stop;
+    /** @type {Promise<void> | null} */
+    this.running = null;
+    /** @type {string | null} */
+    this.next = null;
+    this.since = 0;
   }
 
   /** Ask this, unless something newer comes first; resolves when nothing is left to ask. */

@@ -1,6 +1,6 @@
 // The palette: parts to drag into the picture, or to choose and place by a press, by touch or by the keyboard.
 import { make } from "./dom.js";
-import { BODIES, FACES, CONNECTIONS, PALETTE } from "./new_parts.js";
+import { BODIES, FACES, CONNECTIONS, PALETTE, fits } from "./new_parts.js";
 import { placesOf } from "./scene_parts.js";
 
 const FAR = 6;
@@ -9,9 +9,19 @@ const FAR = 6;
 export class Palette {
   /** `board` takes the tools; `form` is where a connection is made by names. */
   constructor(panel, form, { board, say }) {
-    Object.assign(this, { form, board, say, buttons: new Map() });
+    this.form = form;
+    this.board = board;
+    this.say = say;
+    /** @type {Map<string, any>} */
+    this.buttons = new Map();
+    this.dragged = false;
     panel.append(...PALETTE.map(([title, tools]) => make("fieldset", {}, make("legend", { textContent: title }), make("div", { className: "tools" }, ...Object.entries(tools).map(([name, tool]) => this.button(name, tool))))));
     board.toolChanged = (tool) => this.chosen(tool);
+  }
+
+  /** Offer what scenes in space have, or those in the plane. */
+  offer(space) {
+    for (const [name, button] of this.buttons) button.hidden = !fits(BODIES[name] ?? FACES[name] ?? CONNECTIONS[name], space);
   }
 
   button(name, { words, hint }) {
@@ -25,6 +35,7 @@ export class Palette {
 
   /** Drag a body or a face out of the palette. */
   drag(event, name) {
+    if (this.board.space) return;
     const from = [event.clientX, event.clientY], button = event.currentTarget;
     this.dragged = false;
     if (event.pointerType !== "touch") button.setPointerCapture(event.pointerId);
@@ -58,7 +69,8 @@ export class Palette {
   choose(name, byKeyboard) {
     if (!this.board.ready()) return this.say("This scene is changed by its sliders and its JSON.");
     if (this.board.tool === name) return this.board.use(null);
-    if ((BODIES[name] || FACES[name]) && byKeyboard) {
+    // In space there is no one point under a pointer: a part is placed beside the others, and moved from there.
+    if ((BODIES[name] || FACES[name]) && (byKeyboard || this.board.space)) {
       this.board.start();
       return this.board.place(name, this.board.freePoint(Boolean(FACES[name])));
     }
@@ -86,7 +98,7 @@ export class Palette {
       const ground = make("option", { value: "ground", textContent: k ? "the ground…" : "a point of the ground…" }), none = make("option", { value: "", textContent: "nothing" });
       const box = make("select", {}, ...(label === "Through" ? [none] : []), ...options, ...(count > 1 ? [ground] : []));
       if (k === count - 1 && count > 1) box.value = names.length > 1 ? names.at(-1) : "ground";
-      const point = make("input", { "aria-label": `${label}: point x, y (m)`, value: "0, 0", size: 8, hidden: box.value !== "ground" });
+      const point = make("input", { "aria-label": `${label}: point ${this.board.space ? "x, y, z" : "x, y"} (m)`, value: this.board.space ? "0, 0, 0" : "0, 0", size: 8, hidden: box.value !== "ground" });
       box.onchange = () => { point.hidden = box.value !== "ground"; };
       return { element: make("label", {}, `${label} `, box, " ", point), read: () => (box.value === "ground" ? point.value.split(",").map(Number) : box.value || null) };
     };
@@ -104,7 +116,7 @@ export class Palette {
     this.form.onsubmit = (event) => {
       event.preventDefault();
       const references = fields.map(({ read }) => read()).filter((r) => r !== null);
-      if (references.some((r) => Array.isArray(r) && (r.length !== 2 || !r.every(Number.isFinite)))) return this.say("A point of the ground is two numbers, as 0, 1.5");
+      if (references.some((r) => Array.isArray(r) && (r.length !== (this.board.space ? 3 : 2) || !r.every(Number.isFinite)))) return this.say(`A point of the ground is ${this.board.space ? "three numbers, as 0, 0, 1.5" : "two numbers, as 0, 1.5"}`);
       this.board.make(references, this.board.doc.scene);
       return this.buttons.get(tool).focus();
     };

@@ -1,7 +1,15 @@
 // The fields of every kind of part in the inspector: name in the description, what people call it, unit.
 
+/**
+ * A number or formula.
+ * @returns {any}
+ */
 const number = (name, words, unit, more = {}) => ({ name, words, unit, type: "number", ...more });
 const place = (name, words) => ({ name, words, type: "place" });
+/**
+ * A vector; `plane`, `space` and `turns` say of which bodies.
+ * @returns {any}
+ */
 const vector = (name, words, unit, more = {}) => ({ name, words, unit, type: "vector", ...more });
 const choice = (name, words, options) => ({ name, words, type: "choice", options });
 const check = (name, words) => ({ name, words, type: "check" });

@@ -4,7 +4,7 @@ import { inWords } from "./scene_parts.js";
 
 /** Fill `list` with a button for every part; `pick(id, several)` is called when one is pressed. */
 export function showParts(list, parts, { value, selection, wrong, pick }) {
-  const focused = list.contains(document.activeElement) ? document.activeElement.dataset.part : null;
+  const active = /** @type {HTMLElement | null} */ (document.activeElement), focused = list.contains(active) ? active.dataset.part : null;
   // What touches a face is listed while the face is selected.
   const open = new Set(parts.filter(({ kind, id }) => kind === "face" && selection.has(id)).flatMap(({ members }) => members));
   const listed = parts.filter(({ id, onFace, index }) => !onFace || open.has(index) || selection.has(id) || wrong.has(id));

@@ -10,9 +10,8 @@ const MARGIN = 0.05;
 function curvePath(plot, index) {
   const [xs, ys] = plot.data[index], path = new Path2D();
   xs.forEach((x, i) => {
-    const at = [plot.valToPos(x, "x", true), plot.valToPos(ys[i], "y", true)];
     if (x === null || ys[i] === null) return;
-    path[i && xs[i - 1] !== null ? "lineTo" : "moveTo"](...at);
+    path[i && xs[i - 1] !== null ? "lineTo" : "moveTo"](plot.valToPos(x, "x", true), plot.valToPos(ys[i], "y", true));
   });
   return { stroke: path, fill: null, clip: null, flags: 0 };
 }
@@ -25,7 +24,17 @@ const rangeOf = (lists) => {
 
 export class PlaneChart {
   constructor(panel, player, height) {
-    Object.assign(this, { panel, player, height, plot: null });
+    this.panel = panel;
+    this.player = player;
+    this.height = height;
+    this.plot = null;
+    this.zoomed = false;
+    /** @type {any} */
+    this.shown = null;
+    /** @type {any[]} */
+    this.curves = [];
+    /** @type {number[]} */
+    this.time = [];
     player.onTime(() => this.move());
     new ResizeObserver(() => this.plot?.setSize({ width: Math.max(200, panel.clientWidth), height })).observe(panel);
     onTheme(() => this.shown && this.show(...this.shown));
@@ -35,7 +44,8 @@ export class PlaneChart {
   show(curves, time, [across, up]) {
     this.shown = [curves, time, [across, up]];
     this.clear();
-    Object.assign(this, { curves, time });
+    this.curves = curves;
+    this.time = time;
     const ink = { stroke: color("soft"), grid: { stroke: color("line"), width: 1 }, ticks: { stroke: color("line"), width: 1 }, values: tickWords, labelSize: 18, labelFont: "12px system-ui" };
     const [xs, ys] = [rangeOf(curves.map((c) => c.x)), rangeOf(curves.map((c) => c.y))];
     this.plot = new uPlot({

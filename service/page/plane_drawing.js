@@ -6,7 +6,13 @@ import { add, norm, turned } from "./vectors.js";
 /** Collects what is drawn; lengths are in metres, or in pixels where a name says so. `px` is the length of a pixel (m). */
 export class Drawing {
   constructor(px, view) {
-    Object.assign(this, { px, view, items: [], part: null, alpha: 1 });
+    this.px = px;
+    this.view = view;
+    /** @type {any[]} */
+    this.items = [];
+    /** @type {string | null} */
+    this.part = null;
+    this.alpha = 1;
   }
 
   push(item) {

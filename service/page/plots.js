@@ -5,7 +5,15 @@ import uPlot from "./vendor/uplot.js";
 /** A chart in `panel`; `player` moves its playhead, a press on the chart moves the player. */
 export class TimeChart {
   constructor(panel, player, title, height = 170) {
-    Object.assign(this, { panel, player, title, height, plot: null, data: null, head: make("div", { className: "head" }) });
+    this.panel = panel;
+    this.player = player;
+    this.title = title;
+    this.height = height;
+    this.plot = null;
+    this.data = null;
+    this.series = [];
+    this.options = {};
+    this.head = make("div", { className: "head" });
     player.onTime(() => this.move());
     new ResizeObserver(() => this.resize()).observe(panel);
     onTheme(() => this.data && this.show(this.series, this.data, this.options));
@@ -13,7 +21,9 @@ export class TimeChart {
 
   /** Show columns over `data[0]`; `series` has label, colour name and optional dash of each further column. */
   show(series, data, options = {}) {
-    Object.assign(this, { series, data, options });
+    this.series = series;
+    this.data = data;
+    this.options = options;
     this.plot?.destroy();
     this.panel.replaceChildren();
     const ink = { stroke: color("soft"), grid: { stroke: color("line"), width: 1 }, ticks: { stroke: color("line"), width: 1 } };

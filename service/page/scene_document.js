@@ -12,6 +12,8 @@ export const NOTHING = `{
   "times": {"start": 0, "stop": 3, "count": 301}
 }`;
 
+export const NOTHING_IN_SPACE = NOTHING.replace("[0, -9.81]", "[0, 0, -9.81]");
+
 export class SceneDocument {
   /** `changed(how)` is called after every change; `how` is `text`, `edit`, `drag`, `undo` or `open`. */
   constructor(changed) {

@@ -16,6 +16,8 @@ export class SceneModel {
     this.connections = (description.connections || []).map((connection, i) => ({ ...connection, label: connection.name || `${connection.kind}-${i + 1}` }));
     this.reaches = new Map();
     this.lifts = new Map();
+    /** @type {number | undefined} */
+    this.sizeOnce = undefined;
     this.seek(0);
     this.strings = this.connections.filter((c) => ["string", "chain"].includes(c.kind)).map((c) => [c, stringPath(this, c)]);
     this.forceScale = this.largestForce();

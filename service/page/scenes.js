@@ -20,11 +20,12 @@ import { TimeChart } from "./plots.js";
 import { readable, requestPanel } from "./request_panel.js";
 import { selectionActions } from "./selection_actions.js";
 import { answerScene } from "./scene_answers.js";
-import { NOTHING, SceneDocument } from "./scene_document.js";
+import { NOTHING, NOTHING_IN_SPACE, SceneDocument } from "./scene_document.js";
 import { listenForKeys, listenForUndo } from "./scene_keys.js";
 import { SceneModel } from "./scene_model.js";
 import { exampleText } from "./scene_questions.js";
 import { markFaults, sliders } from "./scene_sliders.js";
+import { SpaceBoard } from "./space_board.js";
 import { SpaceView } from "./space_view.js";
 import { takeAway } from "./take_away.js";
 import { readState, writeState } from "./url_state.js";
@@ -55,7 +56,7 @@ const ready = () => doc.sound && !isNamed(state.scene) && !embedded;
 const atStart = () => !player.playing && player.time === 0;
 const board = new Board({ doc, view: plane, say, ready, atStart, start: toStart, selected: showSelection, dropped, rename: renameInPlace });
 const inspector = new Inspector($("inspector"), { doc, board, edit, rename });
-new Palette($("palette"), $("connect"), { board, say });
+const palette = new Palette($("palette"), $("connect"), { board, say });
 const act = selectionActions({ doc, board, say, start: toStart, selected: showSelection });
 
 player.onTime((time) => {
@@ -83,6 +84,7 @@ document.body.classList.toggle("embed", embedded);
 $("browse").onclick = () => gallery.open();
 $("scene").onchange = () => choose($("scene").value);
 $("new").onclick = () => { choose(OWN); say("A new scene. Drag parts from the palette into the picture."); };
+$("new-space").onclick = () => { choose(OWN, NOTHING_IN_SPACE); say("A new scene in space. Choose parts from the palette; drag them in the picture, with Shift up and down."); };
 $("open-file").onclick = () => $("file").click();
 $("file").onchange = () => { openFile($("file").files[0]); $("file").value = ""; };
 $("undo").onclick = () => act.undo();
@@ -100,7 +102,8 @@ $("window").onchange = () => {
   if (!wrong) { state.window = value; live.ask("open"); }
 };
 for (const form of document.querySelectorAll("form")) form.addEventListener("submit", (event) => event.preventDefault());
-listenForKeys($("plane-canvas"), { px: () => plane.px, act: { ...act, rename: () => inspector.focusName(), nothing: escape, finish: () => board.finish(), closer: () => plane.zoom(1.25), farther: () => plane.zoom(0.8), play: () => player.button.click() } });
+listenForKeys($("plane-canvas"), { px: () => board.px, act: { ...act, rename: () => inspector.focusName(), nothing: escape, finish: () => board.finish(), closer: () => plane.zoom(1.25), farther: () => plane.zoom(0.8), play: () => player.button.click() } });
+listenForKeys($("parts"), { px: () => board.px, act: { ...act, rename: () => inspector.focusName(), nothing: escape }, except: ["Enter", " ", "+", "-"] });
 listenForUndo(act);
 document.addEventListener("dragover", (event) => { event.preventDefault(); $("plane-view").classList.add("dropping"); });
 document.addEventListener("dragleave", () => $("plane-view").classList.remove("dropping"));
@@ -145,6 +148,7 @@ function changed(how) {
   $("redo").disabled = doc.future.length === 0;
   if (!doc.sound) return complain([{ pointer: null, ...doc.fault }]);
   if (how !== "slider" && how !== "drag") sliders($("sliders"), $("place-sliders"), doc.scene, (pointer, next) => doc.change("slider moved", { scene: doc.scene.withSource(pointer, next), how: "slider", run: `slider ${pointer}` }));
+  palette.offer(board.space);
   showSelection();
   return live.ask(how);
 }
@@ -204,6 +208,7 @@ function showSelection() {
   showParts($("parts"), parts, { value: doc.scene.value, selection: doc.selection, wrong: plane.wrong, pick: act.pick });
   inspector.show();
   plane.render();
+  space?.mark(doc.selection);
 }
 
 /** Ask about the scene as it is now, and show the answer. */
@@ -280,7 +285,10 @@ function showView(how) {
   $("plane-view").hidden = model.space;
   $("space-view").hidden = !model.space;
   if (model.space) {
-    space ??= new SpaceView($("space-view"));
+    if (!space) {
+      space = new SpaceView($("space-view"));
+      new SpaceBoard({ view: space, doc, board, ready, selected: showSelection, dropped, start: toStart });
+    }
     space.showForces = $("forces").checked;
     view = space;
     space.show(model);

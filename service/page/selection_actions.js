@@ -47,7 +47,7 @@ export function selectionActions({ doc, board, say, start, selected }) {
       const which = bodies();
       if (!which.length || !board.ready()) return say("Select a body first.");
       start();
-      const step = 3 * gridStep(board.view.px), made = duplicated(doc.scene, which, [step, board.model.space ? step : 0, ...(board.model.space ? [0] : [])], board.model.numbers);
+      const step = 3 * gridStep(board.px), made = duplicated(doc.scene, which, [step, 0, 0].slice(0, board.space ? 3 : 2), board.model.numbers);
       doc.selection.clear();
       for (const name of made.names) doc.selection.add(bodyPart(name));
       board.held = made.names;
@@ -57,17 +57,21 @@ export function selectionActions({ doc, board, say, start, selected }) {
     shift(offset) {
       const which = bodies(), connections = chosen().filter(({ kind }) => kind === "connection"), faces = chosen().filter(({ kind }) => kind === "face" && kind);
       if (!board.ready()) return;
-      if (!chosen().length) return board.view.moveTo(board.view.middle.map((x, k) => x + 2 * offset[k]));
+      if (!chosen().length) return board.space ? null : board.view.moveTo(board.view.middle.map((x, k) => x + 2 * offset[k]));
       start();
       const along = groundOf(doc.scene.value, which).filter((pointer) => board.goesAlong(doc.scene, pointer, which));
       const ends = connections.flatMap(({ pointer }) => ["a", "b", "at"].map((end) => `${pointer}/${end}`).filter((p) => Array.isArray(doc.scene.at(p))));
-      const whole = board.model.space ? [...offset, 0] : offset;
+      const whole = board.space ? [...offset, 0, 0].slice(0, 3) : offset;
       let scene = movedBy(doc.scene, { names: which, points: [...along, ...ends], offset: whole }, board.model.numbers), { waiting } = doc;
       for (const face of faces) ({ scene, waiting } = board.withFaceMoved(scene, waiting, face, offset));
       board.held = which;
       doc.change(`${names(chosen())} moved`, { scene, waiting, how: "build", run: `keys ${[...doc.selection].join()}` });
       const where = which.length ? ` at ${(board.model.numbers.vector(doc.scene.at(pointerTo("bodies", which[0], "at"))) || []).map((x) => Number(x.toPrecision(4))).join(", ")}` : "";
       return say(`${names(chosen())} moved${where}.`);
+    },
+    /** Up or down, in space. */
+    lift(height) {
+      if (board.space) this.shift([0, 0, height]);
     },
     turn(by) {
       const which = bodies().filter((name) => board.model.byName[name]?.rigid);

@@ -41,7 +41,11 @@ export function nearestPlace(model, point, px, except = []) {
 export function snapped(model, point, px, { except = [], free = false } = {}) {
   if (free) return { point: point.map((x) => Number(x.toPrecision(6))), place: null };
   const place = nearestPlace(model, point, px, except), step = gridStep(px);
-  return place ? { point: place.point, place } : { point: point.map((x) => toGrid(x, step)), place: null };
+  if (place) return { point: place.point, place };
+  // What is to hang from a drum hangs straight down from its rim.
+  const rims = model.bodies.filter((body) => body.radius && !except.includes(body.name)).flatMap((body) => [body.at[0] - body.radius, body.at[0] + body.radius]);
+  const rim = rims.find((x) => Math.abs(x - point[0]) < 0.75 * NEAR * px);
+  return { point: point.map((x, k) => (k === 0 && rim !== undefined ? Number(rim.toPrecision(10)) : toGrid(x, step))), place: null };
 }
 
 /** The straight faces that a body can stand on: those of the ground, and the edges of other bodies, which end. */

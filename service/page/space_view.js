@@ -42,6 +42,13 @@ export class SpaceView extends View {
     this.update();
   }
 
+  /** Name what is selected where it is. */
+  mark(selection) {
+    this.marked = selection;
+    for (const body of this.model?.bodies ?? []) this.label(body.name, selection.has(`body:${body.name}`) ? body.name : "", new Vector3(...this.place(body.at)), "deep");
+    this.render();
+  }
+
   /** A point of the scene in the coordinates of the picture. */
   place(point) {
     return point.map((x, k) => (x - this.middle[k]) * this.factor);
@@ -155,6 +162,7 @@ export class SpaceView extends View {
   /** Show the model at its present time. */
   update() {
     for (const part of this.parts) part();
+    if (this.marked) this.mark(this.marked);
     const arrows = this.showForces && this.model.forceScale ? this.model.arrows() : [];
     this.arrowPool.forEach((arrow, i) => {
       const entry = arrows[i];

@@ -5,8 +5,12 @@ export const scaled = (a, factor) => a.map((x) => x * factor);
 export const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
 export const norm = (a) => Math.hypot(...a);
 export const unit = (a) => scaled(a, 1 / (norm(a) || 1));
-/** A quarter turn counter-clockwise, in the plane. */
+/**
+ * A quarter turn counter-clockwise, in the plane.
+ * @type {(vector: number[]) => number[]}
+ */
 export const quarter = ([x, y]) => [-y, x];
+/** @type {(angle: number, vector: number[]) => number[]} */
 export const turned = (angle, [x, y]) => [x * Math.cos(angle) - y * Math.sin(angle), x * Math.sin(angle) + y * Math.cos(angle)];
 /** A vector turned by a unit quaternion [w, x, y, z]. */
 export function rotated([w, x, y, z], v) {

@@ -33,6 +33,8 @@ export class View {
     this.labels = new Map();
     this.filled = false;
     this.painters = [];
+    /** @type {any} */
+    this.bitmap = null;
     this.onView = [];
     this.light = new DirectionalLight(0xffffff, 2.2);
     this.scene.add(new AmbientLight(0xffffff, 1.6), this.light);

@@ -19,6 +19,8 @@ PICTURES = {
         300,
     ),
     "page-phone": ("/#body=racket", 390, 844, "light", 300),
+    "builder-desktop": ("/scenes#scene=crank-slider", 1280, 900, "light", None),
+    "gallery-desktop": ("/scenes", 1280, 900, "light", None),
     "scenes-desktop": ("/scenes#scene=spool", 1280, 860, "light", 330),
     "scenes-phone": ("/scenes#scene=lagrange-top", 390, 844, "dark", 330),
     "studies-desktop": ("/studies", 1280, 860, "light", None),
@@ -42,6 +44,10 @@ def take(base: str, folder: Path) -> None:
                 page.get_by_text("successful").wait_for()
                 page.locator("#list button").first.click()
                 page.locator("#map").wait_for()
+            if name == "builder-desktop":
+                page.locator("#parts button").first.click()
+            if name == "gallery-desktop":
+                page.locator("#browse").click()
             if time is not None:
                 page.locator("#player input").fill(str(time))
                 page.locator("#player input").blur()

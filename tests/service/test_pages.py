@@ -19,8 +19,8 @@ KINDS = {".js": "text/javascript", ".css": "text/css", ".txt": "text/plain"}
 VENDOR = FOLDER / "vendor"
 SERVED = {f"/page/{file.relative_to(FOLDER).as_posix()}": file for file in FOLDER.rglob("*") if file.suffix in KINDS}
 OWN = [file for file in FOLDER.glob("*") if file.is_file()]
-RECIPES = {"package.json", "three.entry.mjs"}
-"""Of the vendored files; they are not served."""
+RECIPES = {"package.json", "three.entry.mjs", "three.d.ts", "uplot.d.ts"}
+"""Of the vendored files, and their types; they are not served."""
 
 
 @pytest.fixture(scope="module")

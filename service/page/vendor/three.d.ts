@@ -1,0 +1,23 @@
+// Types of what the pages use of three.js: enough to see that it exists.
+export declare const AmbientLight: any;
+export declare const BoxGeometry: any;
+export declare const Color: any;
+export declare const ConeGeometry: any;
+export declare const CylinderGeometry: any;
+export declare const DirectionalLight: any;
+export declare const DoubleSide: any;
+export declare const Group: any;
+export declare const Line2: any;
+export declare const LineGeometry: any;
+export declare const LineMaterial: any;
+export declare const Matrix4: any;
+export declare const Mesh: any;
+export declare const MeshBasicMaterial: any;
+export declare const MeshLambertMaterial: any;
+export declare const OrthographicCamera: any;
+export declare const Quaternion: any;
+export declare const Scene: any;
+export declare const SphereGeometry: any;
+export declare const TorusGeometry: any;
+export declare const Vector3: any;
+export declare const WebGLRenderer: any;
