@@ -65,7 +65,7 @@ def _at_border(curve: Curve, low: float, high: float, *, rising: bool) -> list[S
         else:
             high = middle
     place = high if rising else low
-    if not _grows(curve, place, 1 if rising else -1):
+    if not grows(curve, place, 1 if rising else -1):
         return []
     return [
         Solution(
@@ -88,7 +88,7 @@ def _at_pole(curve: Curve, low: float, high: float) -> list[Solution]:
             low = middle
         else:
             high = middle
-    if not (_grows(curve, low, -1) and _grows(curve, high, 1)):
+    if not (grows(curve, low, -1) and grows(curve, high, 1)):
         return []
     return [
         Solution(
@@ -122,13 +122,13 @@ def _at_peak(curve: Curve, low: float, middle: float, high: float) -> list[Solut
             low = x
         if abs(abs(number) - abs(own)) <= curve.error(x) + curve.error(middle) and high - low < 1e-6 * width:
             break
-    if first == middle or not (_grows(curve, middle, -1) and _grows(curve, middle, 1)):
+    if first == middle or not (grows(curve, middle, -1) and grows(curve, middle, 1)):
         return []
     below, above = (curve.number(x) for x in beside(middle, high - low))
     return [Solution((middle,), (high - low + 2.0 * rounding(middle),), "border", below=below, above=above)]
 
 
-def _grows(curve: Curve, place: float, side: int) -> bool:
+def grows(curve: Curve, place: float, side: int) -> bool:
     """Return whether the size of a figure keeps growing towards a place, on one side of it."""
     width = min(curve.varied.most - curve.varied.least, abs(place) or inf)
     sizes = []

@@ -11,6 +11,7 @@ from itertools import pairwise
 from math import inf, log, log2
 
 from core.find.evaluations import Curve
+from core.find.infinite import grows
 from core.find.minima import Three, UndefinedBetween, drop_to_vertex, least_of, reaches_zero
 from core.find.scanning import FINEST_BORDER, Run, interpolated, scanned
 from core.find.solutions import Family, Nearest, Solution
@@ -21,6 +22,9 @@ MOST_STEPS = 200
 
 POINTS = 4
 """Samples through which the inverse is interpolated."""
+
+MOST_PASSES = 3
+"""How often the samples are looked through: again after gaps in the figure were met between them."""
 
 LOOKED_AT = 1e-5
 """Share of the first values below which a value is compared with its error, which may cost questions of its own."""
@@ -63,6 +67,17 @@ def unresolved_root(run: Run, i: int) -> bool:
 
 def roots_of(curve: Curve, target: float) -> Roots:
     """Return where a figure has a value, in the range of its input."""
+    for _ in range(MOST_PASSES):
+        solutions, families, gaps = _looked_through(curve, target)
+        if not gaps:
+            break
+    found = _apart([one for one in solutions if one is not None])
+    nearest = None if found or families else _Search(curve, target).nearest()
+    return Roots(found, families, nearest)
+
+
+def _looked_through(curve: Curve, target: float) -> tuple[list[Solution | None], list[Family], int]:
+    """Return what is found between the samples that there are, and how many gaps in the figure were met on the way."""
     run = scanned(curve, target, unresolved_root, finest_border=FINEST_BORDER, compressed=True)
     search = _Search(curve, target)
     zeros = search.zeros(run)
@@ -77,9 +92,7 @@ def roots_of(curve: Curve, target: float) -> Roots:
     for i in range(1, len(run.xs) - 1):
         if not {i - 1, i, i + 1} & set(zeros):
             solutions += search.dip(run, i)
-    found = _apart([one for one in solutions if one is not None])
-    nearest = None if found or families else search.nearest()
-    return Roots(found, families, nearest)
+    return solutions, families, search.gaps
 
 
 def _apart(solutions: list[Solution]) -> list[Solution]:
@@ -101,11 +114,18 @@ class _Crossed(Exception):
 
 
 class _Search:
-    """Looks for the roots of a figure less a target."""
+    """Looks for the roots of a figure less a target.
+
+    Attributes
+    ----------
+    gaps : int
+        How often it met inputs between samples with which there is no figure.
+    """
 
     def __init__(self, curve: Curve, target: float) -> None:
         self._curve, self._target = curve, target
         self._least, self._most = curve.varied.least, curve.varied.most
+        self.gaps = 0
 
     def g(self, x: float) -> float:
         """Return the figure less the target."""
@@ -166,6 +186,7 @@ class _Search:
         try:
             return self._between(low, high)
         except UndefinedBetween:
+            self.gaps += 1
             return None
 
     def _between(self, low: float, high: float) -> Solution | None:
@@ -190,7 +211,7 @@ class _Search:
             # Interpolation that comes from one side leaves the bracket wide; it is halved every other step then.
             halve = not halve and high - low > 0.5 * width
             width = high - low
-        if min(abs(at_low), abs(at_high)) > 10.0 * size:
+        if min(abs(at_low), abs(at_high)) > size and grows(self._curve, low, -1) and grows(self._curve, high, 1):
             return None
         return self._step(low, high, first)
 
@@ -313,6 +334,7 @@ class _Search:
         try:
             best = self._least_size(low, x, high, own)
         except UndefinedBetween:
+            self.gaps += 1
             return []
         except _Crossed as crossed:
             return [self.between(low, crossed.x), self.between(crossed.x, high)]

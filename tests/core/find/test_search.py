@@ -38,6 +38,8 @@ ROOTS: list[tuple[Function, tuple[float, float], float, list[float], float, int]
     (lambda x: (x - 1.3) ** 2 - 1e-8, (0.0, 3.0), 0.0, [1.2999, 1.3001], 1e-10, 1),
     (lambda x: sqrt(x - 1.0) if x >= 1.0 else None, (0.0, 3.0), sqrt(1e-5), [1.00001], 1e-14, 1),
     (lambda x: 1.0 / (x - 1.234) if x != 1.234 else None, (0.0, 3.0), 0.0, [], 0.0, 1),
+    (lambda x: x - 1.234 if not 1.31 < x < 1.33 else None, (0.0, 3.0), 0.0, [1.234], 1e-14, 1),
+    (lambda x: x - 1.234 if not 1.15 < x < 1.2 else None, (0.0, 3.0), 0.0, [1.234], 1e-14, 1),
 ]
 
 
@@ -92,6 +94,14 @@ def test_a_leap_past_the_value_is_a_jump() -> None:
     (one,) = found.solutions
     assert one.kind == "jump"
     assert (one.below, one.above) == pytest.approx((0.23, 2.23))
+    # However large it is beside what surrounds it.
+    found, _ = search(
+        lambda x: copysign(1e3, x - 1.23) if abs(x - 1.23) < 0.01 else copysign(1.0, x - 1.23),
+        (0.0, 3.0),
+        "equals",
+        0.0,
+    )
+    within(found, [1.23])
 
 
 @pytest.mark.parametrize(
