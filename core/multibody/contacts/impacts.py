@@ -43,6 +43,10 @@ _MOST_IN_TURN = 400
 """Impacts one after another before an order is given up."""
 _MOST_ORDERED = 4
 """Contacts of which every order is tried."""
+_MOST_ON_THE_WAY = 1000
+"""Different rates between impacts in turn of more contacts, whichever is next: six balls in a row come to 720."""
+_TOLD_APART = 2.0**-30
+"""Share of the largest rate in which rates on the way are counted: those beside a step may be followed twice."""
 
 
 @dataclass(frozen=True)
@@ -157,7 +161,7 @@ def impact(
     ------
     BudgetExceeded
         For more than eight touching contacts that push one another by friction, unless they act in order; and for more
-        than four of which every order would have to be tried.
+        than four that come to too many different rates in different orders.
     """
     table = phase_table(base, (), (), q, v).table
     unilateral = along_slip(measures, touching, q, v)
@@ -281,16 +285,8 @@ def _group(
         then = rates_after(one, rates, found)
         if not any(alike(then, other, rates) for _, other in different):
             different.append((described, then))
-    if len(different) == 1 and len(group) <= _MOST_ORDERED:
+    if len(different) == 1 and (len(group) <= _MOST_ORDERED or _ends_alike(unilateral, group, *middle)):
         return at_once
-    if len(different) == 1:
-        raise BudgetExceeded(
-            f"contacts in one impact ({', '.join(names)}), of which every order has to be tried",
-            len(group),
-            _MOST_ORDERED,
-            path=("connections",),
-            remedy='give the contacts an "order", equal where they act together',
-        )
     return Problem(
         "simultaneous-impacts",
         "several contacts take impulses at once, and rigid bodies do not say in which order",
@@ -301,6 +297,49 @@ def _group(
         ),
         'the order in which they happen, as "order" of the contacts, equal where they act together',
     )
+
+
+def _ends_alike(unilateral: Sequence[Unilateral], group: Sequence[int], rates: RatesByLine, found: Responses) -> bool:
+    """Return whether impacts in turn end with the same rates, whichever of the contacts that approach is next.
+
+    Raises
+    ------
+    BudgetExceeded
+        For more rates on the way than `_MOST_ON_THE_WAY`.
+    """
+    least, unit = _least_rate(rates), _TOLD_APART * max(float(abs(x)) for x in rates.values())
+    seen, left, ends = set[tuple[int, ...]](), [rates], list[RatesByLine]()
+    while left:
+        now = left.pop()
+        hits = [i for i in group if now[found.normal[i]] < -least]
+        if not hits:
+            if ends and not alike(now, ends[0], rates):
+                return False
+            ends.append(now)
+        for i in hits:
+            impulses = impulses_together(unilateral, [i], now, found)
+            if isinstance(impulses, Problem):
+                continue
+            then = {a: ZERO if is_zero(x) else x for a, x in rates_after(impulses, now, found).items()}
+            steps = tuple(round(float(x) / unit) for x in then.values())
+            if steps in seen:
+                continue
+            seen.add(steps)
+            left.append(then)
+            if len(seen) > _MOST_ON_THE_WAY:
+                raise BudgetExceeded(
+                    f"rates between the impacts of {', '.join(unilateral[i].name for i in group)}, in every order",
+                    len(seen),
+                    _MOST_ON_THE_WAY,
+                    path=("connections",),
+                    remedy='take "simultaneous": "together" or "in order", or give the contacts an "order"',
+                )
+    return True
+
+
+def _least_rate(rates: RatesByLine) -> float:
+    """Return the rate below which impacts that only come ever nearer to an end have come to it."""
+    return LIMIT * max((float(abs(x)) for x in rates.values()), default=0.0) * 2.0**-24
 
 
 def _by_order(unilateral: Sequence[Unilateral], group: Iterable[int]) -> list[list[int]]:
@@ -360,8 +399,7 @@ def _in_turn(
     works: dict[int, Ball] = {}
     normal = found.normal
     now = dict(rates)
-    # Impacts that only come ever nearer to an end have come to it here.
-    least = LIMIT * max((float(abs(x)) for x in rates.values()), default=0.0) * 2.0**-24
+    least = _least_rate(rates)
     for _ in range(_MOST_IN_TURN):
         hit = next((one for one in order if any(now[normal[i]] < -least for i in one)), None)
         if hit is None:

@@ -98,3 +98,31 @@ def test_a_box_that_lands_flat_in_order_comes_to_rest() -> None:
     assert total == pytest.approx(2 * (2 * 9.81 * 0.32) ** 0.5, rel=1e-15)
     assert sum(event.impulses["friction"] for event in answer.events) == pytest.approx(1, rel=1e-15)
     assert column(answer, "b.velocity").values[0].tolist() == [0, 0]
+
+
+def plank(restitution: float, legs: int = 6) -> dict[str, Any]:
+    """Return a plank that lands level, and symmetrically, on more legs than of which every order is tried."""
+    places = {f"p{i}": [2 * i - legs + 1, -1] for i in range(legs)}
+    body = {"mass": 1, "inertia": 50, "at": [0, 2], "velocity": [0, -1], "places": places}
+    legs_on_floor = [
+        {"kind": "contact", "name": name, "place": f"b.{name}", "on": {"at": [0, 0]}, "restitution": restitution}
+        for name in places
+    ]
+    return {"bodies": {"b": body}, "connections": legs_on_floor}
+
+
+def test_orders_of_many_contacts_that_disagree_are_undecided() -> None:
+    answer = solve_scene(read(plank(0.5)), [1.5])
+    assert answer.problem is not None
+    assert answer.problem.code == "simultaneous-impacts"
+
+
+def test_orders_of_many_contacts_that_agree_are_decided() -> None:
+    """Six equal balls that all meet at once: those of Newton's law in any order exchange their speeds, as together."""
+    scene = row(6, 1)
+    scene["bodies"]["b0"]["at"] = [0, 0]
+    for i, speed in enumerate((3, 2, 1, -1, -2, -3)):
+        scene["bodies"][f"b{i}"]["velocity"] = [speed, 0]
+    answer = solve_scene(read(scene), [1.0])
+    found = [float(column(answer, f"b{i}.velocity").values[0, 0]) for i in range(6)]
+    assert found == pytest.approx([-3, -2, -1, 1, 2, 3], abs=1e-15)
