@@ -334,7 +334,8 @@ def _bound_beside(answer: Mapping[str, Any], path: Path) -> float | Floats | Non
         for step in path[k:]:
             if isinstance(bound, (float, list, tuple, np.ndarray)) or bound is None:
                 break
-            bound = inside(bound, step)
+            # Values by names have their errors by the same names beside them.
+            bound = bound if step == "values" and isinstance(bound, Mapping) else inside(bound, step)
         found = value_at({"": bound}, ("",))
         if isinstance(found, (float, np.ndarray)):
             return found

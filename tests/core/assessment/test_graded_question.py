@@ -115,6 +115,7 @@ class Bounded(Pendulum):
                 {"least": -1.0, "largest": 2.0, "error": 1e-12, "errors": {"least_time": 1e-6}, "least_time": 3.0}
             ],
             "equilibria": [{"positions": {"bob": (0.3, -0.4)}, "errors": {"positions": {"bob": 1e-13}}}],
+            "solutions": [{"values": {"/let/x": 1.5}, "errors": {"/let/x": 1e-9}}],
             "events": [{"kind": "touch", "time": 0.5, "error": 1e-14, "errors": {"energy_loss": None}}],
         }
 
@@ -127,6 +128,7 @@ class Bounded(Pendulum):
         (("extremes", 0, "least_time"), 1e-6),
         (("equilibria", 0, "positions", "bob", 1), 1e-13),
         (("events", 0, "time"), 1e-14),
+        (("solutions", 0, "values", "/let/x"), 1e-9),
     ],
 )
 def test_bounds_are_found_beside_figures_and_in_the_objects_around_them(path: Any, error: float) -> None:
