@@ -228,6 +228,7 @@ studies: environment
 	$(BIN)/python -m benchmarks.studies
 
 # Whether the errors of fits are true, over 1,000 sets of data.
+.PHONY: coverage
 coverage: environment
 	$(BIN)/python -m benchmarks.coverage_of_fits
 
