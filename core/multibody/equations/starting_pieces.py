@@ -30,12 +30,14 @@ class NoPiece(InvalidParameter):
     ----------
     law : Law
         The argument.
+    without_value : bool
+        Whether it has no value.
     """
 
-    def __init__(self, law: Law, rule: str) -> None:
+    def __init__(self, law: Law, rule: str, *, without_value: bool = False) -> None:
         remedy = "describe friction that holds what is at rest by a contact, or start beside the zero"
-        super().__init__(law.path, rule, remedy=remedy)
-        self.law = law
+        super().__init__(law.path, rule, remedy=None if without_value else remedy)
+        self.law, self.without_value = law, without_value
 
 
 @dataclass(frozen=True)
@@ -64,9 +66,8 @@ def table_in_pieces(table: Table, q: Sequence[Ball], v: Sequence[Ball], moving: 
     Raises
     ------
     NoPiece
-        Where no piece does, or more than one: neither side of the zero is left, or the formula does not say which.
-    InvalidParameter
-        For an argument without a value.
+        Where no piece does, or more than one: neither side of the zero is left, or the formula does not say which; and
+        for an argument without a value.
     """
     kept: list[Mapping[Key, int]] = []
     undecided, last = False, None
@@ -119,7 +120,8 @@ def _signs(q: Sequence[Ball], v: Sequence[Ball], tried: Mapping[Key, int]) -> Ca
         state = Expansion([[x, y] for x, y in zip(q, v, strict=True)], [])
         series = series_of(law, state, 1 if rated else 2)
         if not series[0].is_finite():
-            raise InvalidParameter(law.path, "have a value: it divides by zero, or leaves the domain of a function")
+            rule = "have a value: it divides by zero, or leaves the domain of a function"
+            raise NoPiece(law, rule, without_value=True)
         found = leading_sign(series)
         if found or not law.inputs:
             return found

@@ -21,3 +21,24 @@ def switches_of(node: Node) -> Iterator[Node]:
         yield node
     for inner in node.inner:
         yield from switches_of(inner)
+
+
+_ONE = Node("number", "1")
+
+
+def ends_of_domain(node: Node) -> Iterator[Node]:
+    """Yield what is zero where a formula leaves its domain."""
+    match node.kind:
+        case "sqrt" | "log":
+            yield node.inner[0]
+        case "tan":
+            yield Node("cos", inner=node.inner)
+        case "/":
+            yield node.inner[1]
+        case "^":
+            # A whole power of zero is told from others by its value alone, which goes on.
+            yield node.inner[0]
+        case "asin" | "acos":
+            yield Node("-", inner=(_ONE, Node("*", inner=(node.inner[0], node.inner[0]))))
+    for inner in node.inner:
+        yield from ends_of_domain(inner)

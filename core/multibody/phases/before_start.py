@@ -53,7 +53,7 @@ def follow_backwards(motion: PhaseMotion, times: Floats) -> None:
     if not names:
         watched = [
             *watches(phase.unilateral, phase.states, phase.tables[0]),
-            *switches(phase.arguments),
+            *switches(phase.arguments, phase.tables[0].table),
             *lengths(motion.base.measures.limits),
         ]
         with precision(BITS):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from core.arrays import Floats
 from core.formulas import Node
 from core.multibody.contacts.contact_states import Problem
+from core.multibody.language.switches import ends_of_domain
 from core.multibody.laws.law import Law
 from core.multibody.laws.samples import values_of
 from core.multibody.motion.numerical import BEFORE_SINGULAR
@@ -17,7 +17,6 @@ from core.multibody.phases.phase import Phase
 
 VANISHED = 2.0**-16
 """Share of its terms, then or at the start of a phase, below which an argument vanishes where a motion ends."""
-_ONE = Node("number", "1")
 
 
 def formula_that_ends(phase: Phase, late: float) -> Problem | None:
@@ -34,7 +33,7 @@ def formula_that_ends(phase: Phase, late: float) -> Problem | None:
         return None
     q, v = whole.in_pairs(np.array([0.0, late * BEFORE_SINGULAR]))
     for law in laws:
-        for argument in _arguments(law.root):
+        for argument in ends_of_domain(law.root):
             value, size = values_of(replace(law, root=argument, push={}), q, v)
             if abs(value[1]) <= VANISHED * np.max(size):
                 return Problem(
@@ -45,22 +44,6 @@ def formula_that_ends(phase: Phase, late: float) -> Problem | None:
                     decided_by="a formula that has a value there",
                 )
     return None
-
-
-def _arguments(node: Node) -> Iterator[Node]:
-    """Yield what is zero where a formula leaves its domain."""
-    match node.kind:
-        case "sqrt" | "log":
-            yield node.inner[0]
-        case "/":
-            yield node.inner[1]
-        case "^":
-            # A whole power of zero is told from others by its value alone, which goes on.
-            yield node.inner[0]
-        case "asin" | "acos":
-            yield Node("-", inner=(_ONE, Node("*", inner=(node.inner[0], node.inner[0]))))
-    for inner in node.inner:
-        yield from _arguments(inner)
 
 
 def _state(law: Law, q: Floats, v: Floats) -> str:

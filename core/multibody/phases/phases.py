@@ -286,6 +286,14 @@ class _Run:
         except NoPiece as fault:
             if not self.motion.phases:
                 raise
+            if fault.without_value:
+                return Problem(
+                    "formula",
+                    f"a formula of {fault.law.name} has no value from here on: it divides by zero, or leaves the "
+                    "domain of a function",
+                    (fault.law.name,),
+                    decided_by="a formula that has a value there",
+                )
             return Problem(
                 "formula",
                 f"a formula of {fault.law.name} does not say how the motion goes on: either side of the zero on which "

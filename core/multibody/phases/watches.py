@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
+from core.formulas import names_of
 from core.multibody.algebra.polynomials import ONE, Ball
 from core.multibody.contacts.admissible_forces import AdmissibleForce, admissible
 from core.multibody.contacts.contact_states import PhaseTable, State
-from core.multibody.equations.expansion import Expansion, Series
+from core.multibody.equations.expansion import Expansion, Series, leading_sign
+from core.multibody.equations.starting_pieces import series_of
+from core.multibody.language.switches import ends_of_domain
 from core.multibody.laws.law import Law
 from core.multibody.phases.uniform_pieces import polynomial_of
 from core.multibody.search.curves import Curve
@@ -17,6 +21,7 @@ from core.multibody.search.first_of_motion import Watched
 from core.multibody.search.pieces import Pieces
 from core.multibody.table.connection_effects import Limit, Unilateral
 from core.multibody.table.law_pieces import Argument
+from core.multibody.table.table import Table
 
 
 @dataclass(frozen=True)
@@ -96,13 +101,28 @@ def watches(
     return found
 
 
-def switches(arguments: Iterable[Argument]) -> list[Watch]:
-    """Return the arguments of formulas that change their sign where these change their piece."""
-    return [
-        Watch(-1, "switch", Unilateral(", ".join(one.names), {}), one.sign, argument=one.law)
-        for one in arguments
-        if one.sign and one.law.inputs
-    ]
+def switches(arguments: Iterable[Argument], start: Table) -> list[Watch]:
+    """Return the arguments of formulas that change their sign where these change their piece.
+
+    An argument may do so by a pole as well: there it has no value, and what leads there is watched too.
+
+    Parameters
+    ----------
+    start : Table
+        With the state at the start of the phase.
+    """
+    found = []
+    state = Expansion([[q, v] for q, v in zip(start.q, start.v, strict=True)], [])
+    for one in arguments:
+        if not one.sign or not one.law.inputs:
+            continue
+        watch = partial(Watch, -1, "switch", Unilateral(", ".join(one.names), {}))
+        found.append(watch(one.sign, argument=one.law))
+        for root in ends_of_domain(one.law.root):
+            if names_of(root) & one.law.inputs.keys():
+                domain = replace(one.law, root=root)
+                found.append(watch(leading_sign(series_of(domain, state, 1)) or 1, argument=domain))
+    return found
 
 
 def lengths(limits: Sequence[Limit]) -> list[Watch]:

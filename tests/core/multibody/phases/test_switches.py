@@ -128,3 +128,13 @@ def test_bounces_under_a_force_against_the_velocity_are_not_alike() -> None:
     assert up == pytest.approx([1, 1 + 4 / 12], rel=1e-14)
     hits = [event.time for event in found.events if event.kind == "touch"][:2]
     assert hits == pytest.approx([1.0, 1 + 4 / 12 + np.sqrt(1 / 6)], rel=1e-14)
+
+
+def test_a_sign_that_changes_by_a_pole_ends_the_motion_there() -> None:
+    push = {"kind": "force", "name": "push", "place": "p", "force": ["sign(tan(t))", 10]}
+    found = answer(scene({}, push), [0.0, 1.0, 2.0])
+    assert found.problem is not None
+    assert (found.problem.code, found.problem.connections) == ("formula", ("push",))
+    assert found.problem.time == pytest.approx(np.pi / 2, abs=1e-14)
+    assert found.trajectory is not None
+    assert found.trajectory.columns["p.position"].values[:, 0].tolist() == [0.0, 0.5]
