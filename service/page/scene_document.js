@@ -14,6 +14,16 @@ export const NOTHING = `{
 
 export const NOTHING_IN_SPACE = NOTHING.replace("[0, -9.81]", "[0, 0, -9.81]");
 
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+const missingOr = (test) => (value) => value === undefined || test(value);
+
+/** Whether bodies, connections and names are where a description has them, whatever they say. */
+function isDrawable({ bodies = {}, connections = [], let: names = {} }) {
+  const body = (b) => isObject(b) && missingOr(isObject)(b.places) && missingOr((shape) => isObject(shape) && missingOr(Array.isArray)(shape.corners))(b.shape);
+  const connection = (c) => isObject(c) && typeof c.kind === "string" && c.on !== null && (["string", "chain"].includes(c.kind) ? Array.isArray(c.through) : c.through === undefined);
+  return isObject(names) && isObject(bodies) && Object.values(bodies).every(body) && Array.isArray(connections) && connections.every(connection);
+}
+
 export class SceneDocument {
   /** `changed(how)` is called after every change; `how` is `text`, `edit`, `drag`, `undo` or `open`. */
   constructor(changed) {
@@ -47,9 +57,9 @@ export class SceneDocument {
     }
   }
 
-  /** Whether there is something to work on. */
+  /** Whether there is something to draw and to work on; what else is wrong, the service says. */
   get sound() {
-    return this.fault === null;
+    return this.fault === null && isDrawable(this.scene.value);
   }
 
   open(text, waiting = []) {

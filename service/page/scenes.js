@@ -146,7 +146,8 @@ function changed(how) {
   if ($("editor").value !== doc.text) $("editor").value = doc.text;
   $("undo").disabled = doc.past.length === 0;
   $("redo").disabled = doc.future.length === 0;
-  if (!doc.sound) return complain([{ pointer: null, ...doc.fault }]);
+  if (doc.fault) return complain([{ pointer: null, ...doc.fault }]);
+  if (!doc.sound) return live.ask(how);
   if (how !== "slider" && how !== "drag") sliders($("sliders"), $("place-sliders"), doc.scene, (pointer, next) => doc.change("slider moved", { scene: doc.scene.withSource(pointer, next), how: "slider", run: `slider ${pointer}` }));
   palette.offer(board.space);
   showSelection();
@@ -217,7 +218,7 @@ async function refresh(how) {
   save();
   const { scene } = doc, { value } = scene;
   try {
-    if (!isNamed(state.scene) && value.bodies && !Object.keys(value.bodies).length) showNothing();
+    if (!isNamed(state.scene) && doc.sound && value.bodies && !Object.keys(value.bodies).length) showNothing();
     else {
       const held = board.gesture || how === "build" ? board.held ?? [] : [];
       const path = state.scene === OWN ? "/v1/scenes" : catalogue.get(state.scene).path;
@@ -335,9 +336,19 @@ function save() {
   writeState({ scene: state.scene, window: state.window, json: own ? doc.text : null, faces: own && doc.waiting.length ? JSON.stringify(doc.waiting) : null });
 }
 
+/** Faces from an address, which anyone may have written. */
+function facesIn(text) {
+  try {
+    const faces = JSON.parse(text ?? "[]");
+    return Array.isArray(faces) ? faces.filter((on) => on !== null && typeof on === "object" && Array.isArray(on.at)) : [];
+  } catch {
+    return [];
+  }
+}
+
 function restore() {
   const given = readState(), name = catalogue.has(given.scene) || given.scene === OWN ? given.scene : given.json ? OWN : "double-pendulum";
-  choose(name, given.json || null, given.faces ? JSON.parse(given.faces) : []);
+  choose(name, given.json || null, facesIn(given.faces));
   if (Number(given.window) > 0) {
     state.window = Number(given.window);
     $("window").value = state.window;

@@ -131,6 +131,22 @@ def test_faults_are_written_at_their_place(opened, old, new, pointer, selected):
     assert page.locator("#faults li").count() == 0
 
 
+@pytest.mark.parametrize(
+    ("scene", "pointer"),
+    [
+        ({"bodies": 5}, "/bodies"),
+        ({"bodies": {"a": None}}, "/bodies/a"),
+        ({"bodies": {"a": {"mass": 1, "at": [0, 0]}}, "connections": [None]}, "/connections/0"),
+        ({"bodies": {"a": {"mass": 1, "at": [0, 0]}}, "connections": [{"kind": "string"}]}, "/connections/0"),
+    ],
+)
+def test_what_cannot_be_drawn_is_left_to_the_service(opened, scene, pointer):
+    page = opened("/scenes#scene=own&faces=[", expected=REFUSED)
+    page.locator("#editor").fill(json.dumps({"gravity": [0, -9.81]} | scene))
+    settle(page)
+    assert page.locator("#faults button").first.inner_text().startswith(pointer)
+
+
 def test_what_is_not_json_is_said_with_its_place(opened):
     page = opened("/scenes")
     editor = page.locator("#editor")
