@@ -19,7 +19,7 @@ from core.find.roots import roots_of
 from core.find.scanning import FIRST as FEW
 from core.find.scanning import first_shares, widest
 from core.find.solutions import Findings
-from core.find.systems import solved_system
+from core.find.systems import PER_INPUT, solved_system
 from core.find.varied import Varied
 from core.near_names import MOST_LISTED, did_you_mean
 from core.notices import Notice
@@ -184,7 +184,7 @@ def _several(evaluations: Evaluations, conditions: Sequence[Condition]) -> Findi
         system.solutions,
         families=system.families,
         nearest=system.nearest,
-        resolution=tuple((one.most - one.least) / (6 if count == 2 else 4) for one in evaluations.varied),
+        resolution=tuple((one.most - one.least) / (PER_INPUT[count] - 1) for one in evaluations.varied),
         notices=[*_missing(evaluations, conditions), *unbounded],
     )
 
