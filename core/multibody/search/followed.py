@@ -199,6 +199,9 @@ class Followed:
     def _batch(self, ahead: Sequence[Interval], *, closely: bool) -> Batch:
         """Return pieces, and what every quantity does on them."""
         times, until = np.array([one.start for one in ahead]), np.array([one.reach for one in ahead])
+        if not np.all(until > 0.0):
+            what = "what is watched has no value where its search leads, however short its pieces are"
+            raise AccuracyUnreachable(None, math.inf, what, path=("times",))
         pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
         cut = [np.where(each.cut, each.natural, np.inf) for each in pieces]
         if np.isfinite(cut).any():

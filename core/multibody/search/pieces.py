@@ -30,6 +30,9 @@ from core.multibody.table.connection_effects import Force
 PAST_A_PERIOD = 1.0 + 2.0**-20
 """A period and a millionth of it, so that a zero at its end, and what touches a value there, are within."""
 
+UNKNOWN = 2.0**900
+"""Size of what may have any value, of which squares of shares are still doubles."""
+
 COEFFICIENTS = ORDER - 1
 """Of every curve: multipliers have two powers less than coordinates."""
 
@@ -145,6 +148,9 @@ class Pieces:
             for k in range(COEFFICIENTS):
                 values_of_laws(laws, each, len(curves), k, 1.0, space)
             values[p], sizes[p] = space[laws.push_at[0, 1]], np.abs(space[..., 0]).max(axis=0)
+        # Beyond its domain nothing is known of it, not even at the start of a piece.
+        beyond = ~np.isfinite(values).all(axis=(1, 2))
+        values[beyond], sizes[beyond] = 0.0, UNKNOWN
         return Curve(values, np.maximum(sizes, largest))
 
     def of_input(self, given: Input) -> Curve:

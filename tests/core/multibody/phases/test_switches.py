@@ -138,3 +138,12 @@ def test_a_sign_that_changes_by_a_pole_ends_the_motion_there() -> None:
     assert found.problem.time == pytest.approx(np.pi / 2, abs=1e-14)
     assert found.trajectory is not None
     assert found.trajectory.columns["p.position"].values[:, 0].tolist() == [0.0, 0.5]
+
+
+def test_an_argument_is_searched_up_to_the_end_of_its_domain() -> None:
+    """From rest with 1 up to x = 3/4, and on with the velocity that it has there up to x = 1."""
+    push = {"kind": "force", "name": "push", "place": "p", "force": ["if(sqrt(1 - x) - 1/2, 1, 0)", 10]}
+    found = answer(scene({}, push), [0.0, 1.0, 2.0])
+    first, speed = np.sqrt(1.5), np.sqrt(1.5)
+    assert [event.kind for event in found.events] == ["switch", "formula"]
+    assert [event.time for event in found.events] == pytest.approx([first, first + 0.25 / speed], rel=1e-14)
