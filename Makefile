@@ -194,7 +194,7 @@ attacks: kernels
 clients: kernels
 	$(BIN)/python -m pytest -q tests/clients/generated_clients.py tests/clients/generated_typescript.py
 
-.PHONY: fuzz fuzz-loop schemathesis soak scheduling health image dial studies mutants
+.PHONY: fuzz spoilt fuzz-loop schemathesis soak scheduling health image dial studies mutants
 
 # Small changes of the code, each of which a test has to notice: MUTANTS of them, drawn by MUTANTS_SEED.
 MUTANTS ?= 300
@@ -205,6 +205,13 @@ mutants: kernels
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
+
+# Numbered, spoilt questions to every endpoint: a run goes on where it was ended. SPOILT is the number of the last.
+SPOILT ?= 100000
+
+spoilt: kernels
+	mkdir -p build
+	$(BIN)/python -W ignore -m tests.service.mutation_run $(SPOILT) build/spoilt.txt
 
 # Whether anything holds the event loop: extreme questions to every endpoint, judged by counts of work and of calls.
 fuzz-loop: environment
