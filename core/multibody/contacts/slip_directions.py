@@ -58,8 +58,12 @@ def turned(one: Unilateral, direction: Direction) -> Unilateral:
 
 
 def one_of(direction: Direction) -> Direction:
-    """Return a direction without the width to which it is found: what moves on does so along one of them."""
-    return _unit(*direction)
+    """Return a direction without the width to which it is found: what moves on does so along one of them.
+
+    A component that cannot be told from zero is: others would tie coordinates that have nothing to do with one another.
+    """
+    x, y = (ZERO if is_zero(component) else component for component in direction)
+    return _unit(x, y)
 
 
 def _sum(a: Ball, first: LinearForm, b: Ball, second: LinearForm) -> LinearForm:

@@ -14,7 +14,7 @@ from scipy.optimize import linprog
 
 from core.balls import precision
 from core.multibody.contacts.shares_in_space import Cone, best_share
-from core.multibody.contacts.slip_directions import Direction, directions_together
+from core.multibody.contacts.slip_directions import Direction, directions_together, one_of
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import states
 from tests.core.multibody.worked_examples import column, read
@@ -259,6 +259,13 @@ def test_directions_of_onsets_that_depend_on_one_another_converge_or_are_none() 
     assert directions_together([(arb(0), arb(0))], after) == []
     assert directions_together([(arb(1), arb(0))], lambda _: None) == []
     assert directions_together([(arb(1), arb(0))], lambda ways: [(-ways[0][1], ways[0][0])]) is None
+
+
+def test_a_direction_along_an_axis_but_for_its_width_is_chosen_along_it() -> None:
+    """What is left of the other component would tie coordinates that have nothing to do with one another."""
+    with precision(320):
+        assert one_of((arb(-1, 1e-24), arb(1e-35, 1e-24))) == (-1, 0)
+        assert [float(x) for x in one_of((arb(3, 1e-24), arb(4, 1e-24)))] == [0.6, 0.8]
 
 
 def test_friction_that_turns_is_shared_as_openly_as_the_pushes() -> None:
