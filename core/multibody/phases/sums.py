@@ -8,7 +8,7 @@ over of the change of kinetic energy.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -248,8 +248,12 @@ class Sums:
         self._put(one, mine, left, errors + 8.0 * kinetic.error)
 
     def _come_to_rest(self, one: _Sum, piece: Stretch, following: Stretch) -> None:
-        """Add what impacts take that are over in next to no time: their loss is that at the end of the stretch."""
-        ends = piece.columns(np.array([piece.length]), self.how, "energy-in-time")["energy.kinetic"]
+        """Add what impacts take that are over in next to no time: their loss is that at the end of the stretch.
+
+        Forces have worked along the motion without these impacts, which is taken to that end.
+        """
+        alone = replace(piece, phase=replace(piece.phase, tail=None))
+        ends = alone.columns(np.array([piece.length]), self.how, "energy-in-time")["energy.kinetic"]
         starts = following.columns(np.zeros(1), self.how, "energy-in-time")["energy.kinetic"]
         one.add(float(starts.values[0] - ends.values[0]), starts.error + ends.error)
 
