@@ -104,8 +104,6 @@ class Numerals:
         """
         if numbers not in ("decimals", "doubles"):
             raise InvalidParameter("numbers", 'be "decimals" or "doubles"')
-        if not isinstance(let, Mapping):
-            raise InvalidParameter("let", "be an object of names and numbers")
         if len(let) > MOST_NAMES:
             raise InvalidParameter("let", f"have at most {MOST_NAMES} names, not {len(let)}")
         known: dict[str, Ball] = {}

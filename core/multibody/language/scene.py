@@ -74,6 +74,8 @@ class Scene:
             raise InvalidParameter("bodies", "name at least one body")
         if isinstance(self.connections, (str, Mapping)) or not isinstance(self.connections, Sequence):
             raise InvalidParameter("connections", "be a list")
+        if not isinstance(self.let, Mapping):
+            raise InvalidParameter("let", "be an object of names and numbers")
         check_size(self.bodies, self.connections)
         _check_word("impacts", self.impacts, get_args(ImpactLaw))
         _check_word("simultaneous", self.simultaneous, get_args(Simultaneous))

@@ -188,3 +188,9 @@ def test_the_guide_has_every_kind_of_connection_with_its_fields() -> None:
         written = {name for group in re.findall(r"`([^`]+)`", rows[kind]) for name in re.findall(r"\w+", group)}
         assert required <= written, kind
         assert written <= {f.name.rstrip("_") for f in fields(connection)}, kind
+
+
+@pytest.mark.parametrize("let", [5, "x", [1], True])
+def test_names_that_are_no_object_are_refused(let: object) -> None:
+    with pytest.raises(InvalidParameter, match="let must be an object of names and numbers"):
+        scene_from({"let": let, "bodies": {"a": {"mass": 1, "at": [0, 0]}}})
