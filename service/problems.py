@@ -15,6 +15,7 @@ from core import errors
 from core.assessment.feedback.entry_fault import EntryFault
 from core.errors import pointer_of
 from core.formulas import UnknownName
+from core.multibody.equations.starting_pieces import NoPiece
 
 MEDIA_TYPE = "application/problem+json"
 MOST_FAULTS = 20
@@ -224,6 +225,7 @@ MECHANICS: Mapping[type[errors.MechanicsError], str] = {
     errors.PlacesDisagree: "invalid-parameter",
     UnknownName: "invalid-parameter",
     EntryFault: "invalid-parameter",
+    NoPiece: "invalid-parameter",
     errors.UnphysicalInertia: "unphysical-inertia",
     errors.OpenMesh: "open-mesh",
     errors.NotApplicable: "not-applicable",

@@ -140,6 +140,11 @@ SEARCHED = {
     "times": [0.1],
     "outputs": ["trajectory", {"extremes": "one.velocity.x"}],
 }
+PIECES = {
+    "bodies": {"one": {"at": [0.0, 0.0], "mass": 1.0, "velocity": [1.0, 0.0]}},
+    "connections": [{"kind": "force", "place": "one", "force": ["sign(sin(x) - 1/2)", 0.0]}],
+    "times": [0.01],
+}
 
 DESCRIBED_SCENES = (
     PostRoute(
@@ -151,8 +156,8 @@ DESCRIBED_SCENES = (
         DescribedSceneAnswer,
         solved,
         # A heavy body about a point has kernels of its own, one of them for its start alone; so have a named method, a
-        # loop of bars and a slip that turns.
-        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, LOOP, BY_METHOD, SEARCHED, TURNING_SLIP),
+        # loop of bars, a slip that turns and a formula of pieces.
+        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, LOOP, BY_METHOD, SEARCHED, TURNING_SLIP, PIECES),
         description=DESCRIPTION,
         representations={SVG: draw_described},
     ),

@@ -53,7 +53,9 @@ def columns_of(answer: Answer) -> dict[str, Any]:
             for name, column in motion["columns"].items()
             if not (name.endswith(".position") and np.shape(column["values"])[1] == 2)
         }
-    return {name: answer[name] for name in ("angular_velocity", "attitude") if name in answer}
+    return {name: answer[name] for name in ("angular_velocity", "attitude") if name in answer} | answer.get(
+        "residuals", {}
+    )
 
 
 def curves(document: bytes) -> list[str]:

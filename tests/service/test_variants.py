@@ -25,7 +25,9 @@ SERVICE = inline_service()
 ROUTES = {route.path: route for route in questions()}
 HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
 VARIED = [
-    path for path in ROUTES if not path.startswith(("/v1/certified", "/v1/plan", "/v1/assess", "/v1/studies", PATH))
+    path
+    for path in ROUTES
+    if not path.startswith(("/v1/certified", "/v1/plan", "/v1/assess", "/v1/studies", "/v1/fits", PATH))
 ]
 Body = dict[str, Any]
 JSON = {"content-type": "application/json"}

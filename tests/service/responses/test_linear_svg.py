@@ -64,9 +64,9 @@ def test_no_lines_at_all() -> None:
 
 
 def test_components_have_the_colours_of_the_pages() -> None:
-    # The page of scenes has the longest list; that of rotations has its first three, for the three components.
-    lists = [re.search(r"colors = (\[[^]]+\])", (PAGES / name).read_text()) for name in ("scenes.js", "rotation.js")]
-    scenes, rotation = (json.loads(found[1]) for found in lists if found)
+    # Graphs of scenes have the longest list; that of rotations has its first three, for the three components.
+    lists = [("curve_choice.js", r"COLORS = (\[[^]]+\])"), ("rotation.js", r"colors = (\[[^]]+\])")]
+    scenes, rotation = (json.loads(re.findall(pattern, (PAGES / name).read_text())[0]) for name, pattern in lists)
     light = dict(re.findall(r"--(\w+): (#[0-9a-f]{6});", (PAGES / "theme.css").read_text().partition("@media")[0]))
     assert tuple(light[name] for name in scenes) == COLOURS[: len(scenes)]
     assert rotation == scenes[:3]

@@ -51,7 +51,7 @@ def answered(request: Json, input_uncertainty: float | None = None) -> SceneSolu
 
 
 def _moved(request: Json) -> Transformed | None:
-    return geometry.moved(request, ["300", "-7/3", "1/8"][: dimension(request)])
+    return geometry.moved(request, ["3", "-7/3", "1/8"][: dimension(request)])
 
 
 RELATIONS: dict[str, Relation] = {
