@@ -12,6 +12,11 @@ from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 
 Line = dict[int, Ball]
 
+CLEAR = 2.0**-20
+"""Share of a line that is left beside the others, from which on nothing but the line itself can have left it: far above
+what roundings of doubles (2^-53) leave of a line that depends on others, far below what angles of a description leave.
+What is between is still told from zero by its ball, only after the lines that are clear."""
+
 
 class Elimination:
     """Equations in reduced echelon form, built up one by one.
@@ -39,6 +44,11 @@ class Elimination:
         rest, value = self.reduced(line, value)
         if not rest:
             return value
+        self.determine(rest, value)
+        return None
+
+    def determine(self, rest: Line, value: Ball) -> None:
+        """Add an equation of free unknowns only, of which there is at least one."""
         pivot = max(rest, key=lambda j: self._merit(j, rest[j])) if len(rest) > 1 else next(iter(rest))
         factor = rest.pop(pivot)
         rest = {j: x / factor for j, x in rest.items()}
@@ -50,7 +60,6 @@ class Elimination:
                     _subtract(other, k, x * y)
                 self.pivots[j] = (other, right - x * value)
         self.pivots[pivot] = (rest, value)
-        return None
 
     def copy(self) -> Elimination:
         """Return the same equations, to which others can be added."""
@@ -77,19 +86,29 @@ class Elimination:
 
 
 def independent(lines: Iterable[Mapping[int, Ball]], share: float = 0.0) -> list[int]:
-    """Return the numbers of the lines that do not depend on those before them.
+    """Return the numbers of lines on which all others depend, in order, each of which depends on none of the rest.
+
+    Of several such choices it is one that holds well: a line of which little is left beside those before it is tried
+    after all the others, since beside a better one nothing but its rounding may be left of it.
 
     Lines of which no more than a share is left beside those before depend on them, too, where they are known to that
     share only.
     """
     elimination = Elimination()
-    found = []
+    found, doubtful = [], []
     for i, line in enumerate(lines):
-        if share > 0.0 and _largest(elimination.reduced(line, ZERO)[0]) <= share * _largest(line):
-            continue
-        if elimination.add(line, ZERO) is None:
+        rest, size = elimination.reduced(line, ZERO)[0], _largest(line)
+        if _largest(rest) <= max(share, CLEAR) * size:
+            doubtful.append((i, line))
+        else:
+            elimination.determine(rest, ZERO)
             found.append(i)
-    return found
+    for i, line in doubtful:
+        rest = elimination.reduced(line, ZERO)[0]
+        if rest and _largest(rest) > share * _largest(line):
+            elimination.determine(rest, ZERO)
+            found.append(i)
+    return sorted(found)
 
 
 def _largest(line: Mapping[int, Ball]) -> float:

@@ -63,7 +63,7 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
         around = ((at,), reader.number(on["radius"], (*where, "radius")))
         return _by_corners(name, [*_between(name, own, around, touch)])
     face = _face(reader, on, where)
-    return _by_corners(name, [OnFace(name, (*p.bodies, *at.bodies), p, own[1], face, touch) for p in own[0]])
+    return _by_corners(name, [OnFace(name, (*p.bodies, *at.bodies), touch, p, own[1], face) for p in own[0]])
 
 
 Corners = tuple[tuple[Place, ...], float]
@@ -74,7 +74,7 @@ def _between(name: str, a: Corners, b: Corners, touch: Touch) -> Iterator[OnRoun
     """Yield the contacts of two outlines by the corners of the first, then those of the second."""
     if b[1] < 0.0 or (len(a[0]) == 1 and len(b[0]) == 1):
         for place in a[0]:
-            yield OnRound(name, (*place.bodies, *b[0][0].bodies), Round(place, b[0][0], (a[1], b[1])), touch)
+            yield OnRound(name, (*place.bodies, *b[0][0].bodies), touch, Round(place, b[0][0], (a[1], b[1])))
         return
     pairs = [(a, b), (b, a)] if len(b[0]) > 1 else [(b, a)]
     for own, other in pairs:
@@ -82,7 +82,7 @@ def _between(name: str, a: Corners, b: Corners, touch: Touch) -> Iterator[OnRoun
         for i, place in enumerate(own[0] if len(other[0]) > 1 else ()):
             bodies = (*place.bodies, *other[0][0].bodies)
             beside = (own[0][i - 1], own[0][(i + 1) % count]) if count > 1 and own[1] + other[1] == 0.0 else ()
-            yield OnOutline(name, bodies, place, other[0], (own[1], other[1]), touch, beside)
+            yield OnOutline(name, bodies, touch, place, other[0], (own[1], other[1]), beside)
 
 
 def _by_corners(name: str, corners: Sequence[OnFace | OnRound | OnOutline]) -> Definition:

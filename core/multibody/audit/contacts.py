@@ -12,13 +12,16 @@ from core.multibody.audit.surfaces import Face, Round, friction_powers
 
 
 @dataclass(frozen=True)
-class OnFace(Definition):
-    """A place, rim or ball that does not pass a face."""
+class Touching(Definition):
+    """What has a gap that does not fall below zero, and rubs where it is closed.
+
+    Attributes
+    ----------
+    touch : Touch
+        Its coefficients.
+    """
 
     kind: ClassVar[str] = "contact"
-    place: Place
-    radius: float
-    face: Face
     touch: Touch
 
     def works(self) -> bool:
@@ -29,6 +32,15 @@ class OnFace(Definition):
     def coefficients(self) -> Touch | None:
         """See `Definition.coefficients`."""
         return self.touch
+
+
+@dataclass(frozen=True)
+class OnFace(Touching):
+    """A place, rim or ball that does not pass a face."""
+
+    place: Place
+    radius: float
+    face: Face
 
     @property
     def reach(self) -> float:
@@ -56,21 +68,10 @@ class OnFace(Definition):
 
 
 @dataclass(frozen=True)
-class OnRound(Definition):
+class OnRound(Touching):
     """Two rims or balls, one of which may be a point, that do not pass one another."""
 
-    kind: ClassVar[str] = "contact"
     round: Round
-    touch: Touch
-
-    def works(self) -> bool:
-        """See `Definition.works`."""
-        return self.touch.static > 0.0
-
-    @property
-    def coefficients(self) -> Touch | None:
-        """See `Definition.coefficients`."""
-        return self.touch
 
     @property
     def reach(self) -> float:

@@ -8,7 +8,8 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from core.multibody.audit.definition import Definition, Touch
+from core.multibody.audit.contacts import Touching
+from core.multibody.audit.definition import Definition
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, across, dot, length, rate, spin_of
 from core.multibody.audit.surfaces import friction_powers
 
@@ -70,7 +71,7 @@ class SumOfForces(Definition):
 
 
 @dataclass(frozen=True)
-class OnOutline(Definition):
+class OnOutline(Touching):
     """A corner with a radius that does not pass a convex outline of the plane.
 
     Attributes
@@ -83,21 +84,10 @@ class OnOutline(Definition):
         The corners beside it on its own outline.
     """
 
-    kind: ClassVar[str] = "contact"
     place: Place
     corners: tuple[Place, ...]
     radii: tuple[float, float]
-    touch: Touch
     beside: tuple[Place, ...] = ()
-
-    def works(self) -> bool:
-        """See `Definition.works`."""
-        return self.touch.static > 0.0
-
-    @property
-    def coefficients(self) -> Touch | None:
-        """See `Definition.coefficients`."""
-        return self.touch
 
     @property
     def reach(self) -> float:

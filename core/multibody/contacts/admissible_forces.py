@@ -10,7 +10,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, constant, entry, is_zero
-from core.multibody.algebra.rank import Elimination, independent
+from core.multibody.algebra.rank import Elimination
 from core.multibody.contacts.certificates import certificates
 from core.multibody.contacts.contact_states import PhaseTable, State, disc
 from core.multibody.contacts.shares_in_space import Cone, best_share
@@ -161,7 +161,7 @@ def _summed(parts: Sequence[tuple[Ball, AdmissibleForce]]) -> AdmissibleForce:
 
 def _shares_of(conditions: Sequence[AdmissibleForce], table: Table) -> list[dict[int, Ball]]:
     """Return multipliers that give no force and have a part in conditions, if they are the same along the motion."""
-    if len(independent(row.line(table.q) for row in table.rows)) == len(table.rows):
+    if len(table.independent_rows()) == len(table.rows):
         return []
     rows = {row for one in conditions for row in (*one.terms, *one.rubs)}
     forceless = _balanced(table, {})

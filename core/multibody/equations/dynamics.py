@@ -265,7 +265,7 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
     for line, inertia, force in zip(lines, pushed, given, strict=True):
         left = elimination.add(line, inertia - force)
         if left is not None and not is_zero(left):
-            if len(independent(row.line(table.q) for row in table.rows)) < len(table.rows):
+            if len(table.independent_rows()) < len(table.rows):
                 raise InvalidParameter(
                     ("connections",),
                     "be able to carry the loads: the start is a singular place, where no finite forces hold the bodies "

@@ -32,7 +32,6 @@ from core.balls import precision
 from core.compiled import kernel
 from core.errors import NotApplicable
 from core.multibody.algebra.polynomials import BITS
-from core.multibody.algebra.rank import independent
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
 from core.multibody.motion.whole import Whole
 from core.systems.system import PROJECTION, VECTOR_FIELD, ClosedForm, Model, Range, Structure
@@ -248,7 +247,7 @@ class SceneSystem:
     def _packed(self) -> tuple[Packed, Units]:
         table = self.whole.reduced.table
         units = units_of(table, self.whole.reduced_accelerations)
-        return packed(table, independent(row.line(table.q) for row in table.rows), units), units
+        return packed(table, table.independent_rows(), units), units
 
     @cached_property
     def initial_state(self) -> Floats:

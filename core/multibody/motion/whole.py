@@ -14,7 +14,6 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, entry
-from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
 from core.multibody.laws.samples import values_of
@@ -111,15 +110,14 @@ class Whole:
             where = sorted({i for k in parts for i in self.parts[k][0]})
             table = restricted(self.reduced.table, where)
             units = units_of(table, [self.reduced_accelerations[i] for i in where])
-            chosen = independent(row.line(table.q) for row in table.rows)
+            chosen = table.independent_rows()
             self._packed[parts] = (packed(table, chosen, units), units, where)
         return self._packed[parts]
 
     @cached_property
     def independent_rows(self) -> list[int]:
-        """The rows of the table that do not follow from those before them."""
-        table = self.measures.table
-        return independent(row.line(table.q) for row in table.rows)
+        """See `Table.independent_rows`; of the table as described."""
+        return self.measures.table.independent_rows()
 
     def motion_of(self, coordinates: Sequence[int]) -> Motion | None:
         """Return the motion of the part that these coordinates of the scene follow, None where they stay."""

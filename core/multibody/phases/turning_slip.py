@@ -20,7 +20,6 @@ from core.arrays import Floats
 from core.balls import precision
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
-from core.multibody.algebra.rank import independent
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.equations.dynamics import accelerations
 from core.multibody.equations.expansion import Expansion, expansion, saddle, slope, value
@@ -92,7 +91,7 @@ class TurningSlip(Motion):
     @cached_property
     def chosen(self) -> list[int]:
         """Rows that do not follow from others."""
-        return independent(row.line(self.table.q) for row in self.table.rows)
+        return self.table.independent_rows()
 
     def run(self, kind: str, end: float) -> SlipSeries:
         """Return the steps to a time, or to the end of the slip.
@@ -246,7 +245,7 @@ class TurningWhole(Whole):
         table = self.measures.table
         count = len(table.names)
         gains, found = np.zeros((len(q), count)), np.zeros((len(q), len(table.rows)))
-        chosen = independent(row.line(table.q) for row in table.rows)
+        chosen = table.independent_rows()
         for s in range(len(q)):
             places, rates = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
             now = replace(table, q=places, v=rates).oriented()

@@ -27,6 +27,7 @@ from core.multibody.algebra.polynomials import (
     substituted,
     variables,
 )
+from core.multibody.algebra.rank import independent
 from core.multibody.laws.law import Law
 from core.multibody.laws.merged import merged
 from core.multibody.laws.series import values_at
@@ -143,6 +144,15 @@ class Table:
     q: list[Ball] = field(default_factory=list)
     v: list[Ball] = field(default_factory=list)
     timed: set[int] = field(default_factory=set)
+
+    def independent_rows(self) -> list[int]:
+        """Return the numbers of rows on which all others depend at the start, in order.
+
+        Rows whose lines are the same everywhere come first: what they leave to others they leave along the whole
+        motion, whereas rows that turn with it may come to depend on one another.
+        """
+        order = sorted(range(len(self.rows)), key=lambda r: not self.rows[r].constant)
+        return sorted(order[k] for k in independent(self.rows[r].line(self.q) for r in order))
 
     def coordinate(self, name: str, unit: str, value: Ball) -> int:
         """Add a coordinate and return its number."""

@@ -19,7 +19,6 @@ import numpy as np
 
 from core.arrays import Floats, largest_magnitude, row_lengths
 from core.errors import MechanicsError, NotApplicable, Path
-from core.multibody.algebra.rank import independent
 from core.multibody.language.numerals import SHIFT, Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.motion.modelling import Modelled, modelled
@@ -164,7 +163,7 @@ def _moved(scene: Scene, found: Modelled, paths: tuple[Path, ...], share: float)
 
 def _shape(found: Modelled) -> tuple[list[str], int]:
     table = found.described.measures.table
-    return table.names, len(independent(row.line(table.q) for row in table.rows))
+    return table.names, len(table.independent_rows())
 
 
 def instants(times: Floats) -> Floats:

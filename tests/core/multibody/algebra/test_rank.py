@@ -51,3 +51,11 @@ def test_what_is_left_of_a_line_below_what_is_known_of_it_is_nothing() -> None:
     assert independent(lines) == [0, 1, 2]
     assert independent(lines, 1e-8) == [0, 2]
     assert independent(lines, 1e-10) == [0, 1, 2]
+
+
+def test_a_line_of_which_little_is_left_is_tried_after_the_others() -> None:
+    """The second line is the first up to its rounding: taken before the third, it would leave nothing of that one."""
+    lines = [{0: arb(1), 1: arb(1)}, {0: arb(1), 1: arb(1) + arb("1e-9")}, {0: arb(1), 1: arb(-1)}]
+    assert independent(lines) == [0, 2]
+    assert independent(lines[:2]) == [0, 1]
+    assert independent([lines[0], lines[2], lines[1]]) == [0, 1]

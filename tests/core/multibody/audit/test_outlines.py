@@ -16,7 +16,7 @@ SMOOTH = Touch(0.0, 0.0, 0.0, ())
 def test_gap_is_the_distance_from_the_nearest_point(corners: tuple[tuple[float, float], ...]) -> None:
     """Outside, the least distance from points of the outline, as far as they are close together; below zero inside."""
     ends = tuple(Place("b", corner) for corner in corners)
-    one = OnOutline("c", ("a", "b"), Place("a", (0.0, 0.0)), ends, (0.1, 0.05), SMOOTH)
+    one = OnOutline("c", ("a", "b"), SMOOTH, Place("a", (0.0, 0.0)), ends, (0.1, 0.05))
     random = np.random.default_rng(5)
     points = random.uniform(-2, 2, (200, 2))
     turn = np.full(200, 0.3)

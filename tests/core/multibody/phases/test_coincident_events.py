@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import kinds
@@ -338,3 +339,51 @@ def test_a_welded_pair_that_turns_lands_once() -> None:
     answer = solve_scene(read(scene), [1])
     assert kinds(answer) == [("touch", "floor")]
     assert column(answer, "disc.position").values[-1][1] == pytest.approx(-0.6, abs=1e-12)
+
+
+@pytest.mark.parametrize("spin", [(0, 0, 0), (1, 0, 0), (1, 2, -1)])
+@pytest.mark.parametrize("turned_round", [False, True])
+def test_a_welded_pair_lands_once_in_space(spin: tuple[int, int, int], turned_round: bool) -> None:
+    """Taken as one rigid body: P = speed / (1/m + (r x n) J^-1 (r x n)), with the moments about the common centre.
+
+    The masses are equal, so that each centre is half of the distance off.
+    """
+    apart = np.array([0.3, 0.2, 0.4])
+    disc = {
+        "mass": 0.5,
+        "moments": [0.01, 0.02, 0.03],
+        "at": [0, 0, 0],
+        "velocity": [-1, 0.5, 0],
+        "angular_velocity": list(spin),
+        "places": {"c": [0, 0, 0]},
+    }
+    bar = {
+        "mass": 0.5,
+        "moments": [0.001, "1/24", "1/24"],
+        "at": apart.tolist(),
+        "velocity": (np.array([-1, 0.5, 0]) + np.cross(spin, apart)).tolist(),
+        "angular_velocity": list(spin),
+    }
+    connections = [
+        {"kind": "weld", "a": "bar", "b": "disc"},
+        {"kind": "contact", "name": "floor", "place": "disc.c", "on": {"at": [0, 0, -0.6], "normal": [0, 0, 1]}},
+    ]
+    bodies = {"disc": disc, "bar": bar}
+    scene = {
+        "gravity": [0, 0, -10],
+        "bodies": dict(reversed(bodies.items())) if turned_round else bodies,
+        "connections": connections[::-1] if turned_round else connections,
+    }
+    answer = solve_scene(read(scene), [0.6])
+    assert answer.problem is None
+    landing = next(event for event in answer.events if event.kind == "touch")
+    before = solve_scene(read(scene), [landing.time * (1 - 1e-13)])
+    turn = Rotation.from_quat(column(before, "disc.attitude").values[0], scalar_first=True).as_matrix()
+    speed = -column(before, "disc.velocity").values[0][2]
+    if not any(spin):
+        assert landing.time == pytest.approx(math.sqrt(0.12), rel=1e-12)
+        assert speed == pytest.approx(math.sqrt(12), rel=1e-12)
+    moments = np.diag([0.011, 0.02 + 1 / 24, 0.03 + 1 / 24]) + (apart @ apart * np.eye(3) - np.outer(apart, apart)) / 4
+    along = turn.T @ np.cross(turn @ -apart / 2, [0, 0, 1])
+    impulse = speed / (1 + along @ np.linalg.solve(moments, along))
+    assert landing.impulses["normal"] == pytest.approx(impulse, rel=1e-11)
