@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,18 @@ BEGIN = np.zeros(())
 """Time of the start (s)."""
 
 
+Corner = TypeVar("Corner")
+
+
+@dataclass(frozen=True)
+class Outline(Generic[Corner]):
+    """Corners with what is within a radius of them, or with an ellipsoid about each along the body axes (m)."""
+
+    corners: tuple[Corner, ...]
+    radius: float
+    semi_axes: tuple[float, ...] = ()
+
+
 @dataclass(frozen=True)
 class RigidBody:
     """One body.
@@ -33,8 +45,8 @@ class RigidBody:
     inertia : ndarray, shape () in the plane and (3, 3) in space, or None
         About the centre of mass, in space in body axes (kg m^2); None of a particle.
     radius : float or None
-    outline : tuple of corners and a radius, or None
-        Of its shape: corners in body axes from the centre of mass (m), and the radius of what is within it of them.
+    outline : Outline or None
+        Of its shape, with its corners in body axes from the centre of mass (m).
     start : Pose
     velocity, angular_velocity : ndarray or None
         As far as they are given; in space the angular velocity is in body axes.
@@ -49,7 +61,7 @@ class RigidBody:
     velocity: Numbers | None = None
     angular_velocity: Numbers | None = None
     places: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    outline: tuple[tuple[tuple[float, ...], ...], float] | None = None
+    outline: Outline[tuple[float, ...]] | None = None
 
     @cached_property
     def moment(self) -> float:
@@ -133,13 +145,13 @@ class Reader:
         body = self.bodies.get(value) if isinstance(value, str) else None
         return 0.0 if body is None or body.radius is None else body.radius
 
-    def corners(self, value: object, path: Path) -> tuple[tuple[Place, ...], float]:
-        """Return what a body touches with as a whole, as its corners and a radius; of a place, itself and 0."""
+    def outline(self, value: object, path: Path) -> Outline[Place]:
+        """Return what a body touches with as a whole; of a place, itself as the only corner."""
         body = self.bodies.get(value) if isinstance(value, str) else None
         if body is None or body.outline is None:
-            return (self.place(value, path),), self.rim(value)
-        corners, radius = body.outline
-        return tuple(Place(body.name, corner) for corner in corners), radius
+            return Outline((self.place(value, path),), self.rim(value))
+        corners = tuple(Place(body.name, corner) for corner in body.outline.corners)
+        return Outline(corners, body.outline.radius, body.outline.semi_axes)
 
     def turns(self, body: str | None) -> bool:
         """Return whether something is a body with inertia."""
@@ -178,12 +190,13 @@ class Reader:
         own = ("radius",) if body.radius is not None else ("shape", "radius")
         return None if body.rim is None else self.number(body.rim, ("bodies", name, *own))
 
-    def _outline(self, name: str) -> tuple[tuple[tuple[float, ...], ...], float] | None:
+    def _outline(self, name: str) -> Outline[tuple[float, ...]] | None:
         written = self.scene.bodies[name].shape
         if written is None:
             return None
         outline = shape_of(written, self.numerals, ("bodies", name, "shape"), self.dimension).outline
-        return tuple(tuple(map(float, corner)) for corner in outline.corners), float(outline.radius)
+        corners = tuple(tuple(map(float, corner)) for corner in outline.corners)
+        return Outline(corners, float(outline.radius), tuple(map(float, outline.semi_axes)))
 
     def _inertia(self, name: str) -> tuple[float, Any]:
         body, path = self.scene.bodies[name], ("bodies", name)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from core.multibody.audit.bodies import Path, Reader
+from core.multibody.audit.bodies import Outline, Path, Reader
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.definition_of import definition_of
@@ -14,7 +14,7 @@ from core.multibody.audit.joints import AXES
 from core.multibody.audit.outlines import ByCorners, OnOutline
 from core.multibody.audit.placement import Place, Undefined
 from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
-from core.multibody.audit.surfaces import Face, Round
+from core.multibody.audit.surfaces import Face, Round, Tip
 from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.written import GROUND, Number
 
@@ -54,35 +54,33 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
         both = (first,) if other is None else (first, other)
         return Stop(name, both, first, other, limit, 1 if least else -1, touch)
     if connection.place is None:
-        a, b = (reader.corners(getattr(connection, end), (*path, end)) for end in "ab")
+        a, b = (reader.outline(getattr(connection, end), (*path, end)) for end in "ab")
         return _by_corners(name, [*_between(name, a, b, touch)])
-    own, on = reader.corners(connection.place, (*path, "place")), connection.surface
+    own, on = reader.outline(connection.place, (*path, "place")), connection.surface
     where = (*path, "on")
     at = reader.place(on["at"], (*where, "at"))
     if "radius" in on:
-        around = ((at,), reader.number(on["radius"], (*where, "radius")))
+        around = Outline((at,), reader.number(on["radius"], (*where, "radius")))
         return _by_corners(name, [*_between(name, own, around, touch)])
-    face = _face(reader, on, where)
-    return _by_corners(name, [OnFace(name, (*p.bodies, *at.bodies), touch, p, own[1], face) for p in own[0]])
+    face, tips = _face(reader, on, where), [Tip(place, own.radius, own.semi_axes) for place in own.corners]
+    return _by_corners(name, [OnFace(name, (*tip.place.bodies, *at.bodies), touch, tip, face) for tip in tips])
 
 
-Corners = tuple[tuple[Place, ...], float]
-"""Corners of an outline, and its radius (m)."""
-
-
-def _between(name: str, a: Corners, b: Corners, touch: Touch) -> Iterator[OnRound | OnOutline]:
+def _between(name: str, a: Outline[Place], b: Outline[Place], touch: Touch) -> Iterator[OnRound | OnOutline]:
     """Yield the contacts of two outlines by the corners of the first, then those of the second."""
-    if b[1] < 0.0 or (len(a[0]) == 1 and len(b[0]) == 1):
-        for place in a[0]:
-            yield OnRound(name, (*place.bodies, *b[0][0].bodies), touch, Round(place, b[0][0], (a[1], b[1])))
+    if b.radius < 0.0 or (len(a.corners) == 1 and len(b.corners) == 1):
+        (other,) = b.corners
+        for place in a.corners:
+            yield OnRound(name, (*place.bodies, *other.bodies), touch, Round(place, other, (a.radius, b.radius)))
         return
-    pairs = [(a, b), (b, a)] if len(b[0]) > 1 else [(b, a)]
-    for own, other in pairs:
-        count = len(own[0])
-        for i, place in enumerate(own[0] if len(other[0]) > 1 else ()):
-            bodies = (*place.bodies, *other[0][0].bodies)
-            beside = (own[0][i - 1], own[0][(i + 1) % count]) if count > 1 and own[1] + other[1] == 0.0 else ()
-            yield OnOutline(name, bodies, touch, place, other[0], (own[1], other[1]), beside)
+    pairs = [(a, b), (b, a)] if len(b.corners) > 1 else [(b, a)]
+    sharp = a.radius + b.radius == 0.0
+    for one, two in pairs:
+        own, others, count = one.corners, two.corners, len(one.corners)
+        for i, place in enumerate(own if len(others) > 1 else ()):
+            bodies = (*place.bodies, *others[0].bodies)
+            beside = (own[i - 1], own[(i + 1) % count]) if count > 1 and sharp else ()
+            yield OnOutline(name, bodies, touch, place, others, (one.radius, two.radius), beside)
 
 
 def _by_corners(name: str, corners: Sequence[OnFace | OnRound | OnOutline]) -> Definition:
@@ -108,6 +106,10 @@ def rolling(connection: Rolling, reader: Reader, name: str, path: Path) -> Defin
     # In space a ball may roll whose centre is a place of it, and not its centre of mass.
     place, on = reader.place(connection.place, (*path, "place")), connection.surface
     radius = reader.rim(place.body)
+    tip = Tip(place, radius)
+    if not radius:
+        outline = reader.outline(connection.place, (*path, "place"))
+        tip = Tip(outline.corners[0], outline.radius, outline.semi_axes)
     where = (*path, "on")
     at = reader.place(on["at"], (*where, "at"))
     bodies = (*place.bodies, *at.bodies)
@@ -121,7 +123,7 @@ def rolling(connection: Rolling, reader: Reader, name: str, path: Path) -> Defin
         around = Round(place, at, (radius, reader.number(on["radius"], (*where, "radius"))))
         return RollingOnRound(name, bodies, around) if reader.dimension == 2 else RollingOnBall(name, bodies, around)
     turning = reader.number(on["rate"], (*where, "rate")) if on.get("rate") is not None else 0.0
-    return RollingOnFace(name, bodies, place, radius, _face(reader, on, where), turning)
+    return RollingOnFace(name, bodies, tip, _face(reader, on, where), turning)
 
 
 def _face(reader: Reader, on: Any, where: Path) -> Face:

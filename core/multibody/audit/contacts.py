@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from core.multibody.audit.definition import Definition, Touch
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, rate
-from core.multibody.audit.surfaces import Face, Round, friction_powers
+from core.multibody.audit.placement import Motion, Numbers, Placement, rate
+from core.multibody.audit.surfaces import Face, Round, Tip, friction_powers
 
 
 @dataclass(frozen=True)
@@ -36,20 +36,19 @@ class Touching(Definition):
 
 @dataclass(frozen=True)
 class OnFace(Touching):
-    """A place, rim or ball that does not pass a face."""
+    """A place, rim, ball or ellipsoid that does not pass a face."""
 
-    place: Place
-    radius: float
+    tip: Tip
     face: Face
 
     @property
     def reach(self) -> float:
         """See `Definition.reach`."""
-        return self.radius
+        return self.tip.size
 
     def gap(self, placement: Placement) -> Numbers:
         """Return the gap (m), shape ()."""
-        return self.face.height(placement, self.place) - self.radius
+        return self.face.gap(placement, self.tip)
 
     def gaps(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.gaps`."""
@@ -59,7 +58,7 @@ class OnFace(Touching):
         """See `Definition.slips`."""
         if not self.touch.friction:
             return {}
-        return {f"{self.name}.normal": self.face.slip(placement, motion, self.place, self.radius)}
+        return {f"{self.name}.normal": self.face.slip(placement, motion, self.tip)}
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""

@@ -11,18 +11,17 @@ import numpy as np
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.joints import AXES
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, cross, dot, rate, spin_of
-from core.multibody.audit.surfaces import Face, Round, friction_powers
+from core.multibody.audit.surfaces import Face, Round, Tip, friction_powers
 
 ZERO: Numbers = np.zeros(())
 
 
 @dataclass(frozen=True)
 class RollingOnFace(Definition):
-    """A rim or ball that rolls on a face, in space on a plane that may turn about its normal at a rate (rad/s)."""
+    """A rim, ball or ellipsoid that rolls on a face, in space on a plane that may turn about its normal (rad/s)."""
 
     kind: ClassVar[str] = "rolling"
-    place: Place
-    radius: float
+    tip: Tip
     face: Face
     turning: float = 0.0
 
@@ -33,11 +32,11 @@ class RollingOnFace(Definition):
     @property
     def reach(self) -> float:
         """See `Definition.reach`."""
-        return self.radius
+        return self.tip.size
 
     def gap(self, placement: Placement) -> Numbers:
         """Return the gap (m), shape ()."""
-        return self.face.height(placement, self.place) - self.radius
+        return self.face.gap(placement, self.tip)
 
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
@@ -45,16 +44,16 @@ class RollingOnFace(Definition):
 
     def held_rates(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.held_rates`."""
-        slip = self.face.slip(placement, motion, self.place, self.radius)
+        slip = self.face.slip(placement, motion, self.tip)
         if not self.turning:
             return {"slip": slip}
         n = self.face.normal_in(placement)
-        d = self.place.at(placement) - self.face.at.at(placement)
+        d = self.tip.place.at(placement) + self.tip.lever(placement, n) - self.face.at.at(placement)
         return {"slip": slip - self.turning * cross(n, d)}
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
-        slip = self.face.slip(placement, motion, self.place, self.radius)
+        slip = self.face.slip(placement, motion, self.tip)
         names = [f"{self.name}.friction"]
         if len(self.face.normal) == 3:
             names = [f"{self.name}.friction.{axis}" for axis in AXES]

@@ -7,7 +7,55 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, across, carried, cross, dot, spin_of
+from core.multibody.audit.placement import (
+    Motion,
+    Numbers,
+    Place,
+    Placement,
+    Undefined,
+    across,
+    carried,
+    cross,
+    dot,
+    length,
+    spin_of,
+)
+
+
+@dataclass(frozen=True)
+class Tip:
+    """What touches a face: everything within a radius of a place, or in space an ellipsoid about it.
+
+    Attributes
+    ----------
+    semi_axes : tuple of float
+        Along the body axes (m); that of a disc along its axis is zero. None of what has a radius.
+    """
+
+    place: Place
+    radius: float = 0.0
+    semi_axes: tuple[float, ...] = ()
+
+    @property
+    def size(self) -> float:
+        """Its largest distance from the place (m)."""
+        return max((self.radius, *self.semi_axes))
+
+    def lever(self, placement: Placement, n: Numbers) -> Numbers:
+        """Return the vector from the place to the point that is lowest against a unit vector (m), shape (d,).
+
+        That of an ellipsoid x.A^-2 x = 1 with its gradient along -n: x = -A^2 n/|A n|.
+        """
+        if not self.semi_axes:
+            return -self.radius * n
+        assert self.place.body is not None, "an ellipsoid belongs to a body"
+        axes = placement[self.place.body].rotation
+        if axes is None:
+            raise Undefined("an ellipsoid whose attitude is not known")
+        stretched = np.array(self.semi_axes) * (np.swapaxes(axes, -1, -2) @ n[..., None])[..., 0]
+        lowest = np.array(self.semi_axes) * stretched / length(stretched)[..., None]
+        found: Numbers = -(axes @ lowest[..., None])[..., 0]
+        return found
 
 
 @dataclass(frozen=True)
@@ -23,20 +71,23 @@ class Face:
         # A particle carries directions of the ground.
         return carried(None if pose is None or pose.rotation is None else pose, self.normal)
 
-    def height(self, placement: Placement, place: Place) -> Numbers:
-        """Return the height of a place above the face (m), shape ()."""
-        return dot(self.normal_in(placement), place.at(placement) - self.at.at(placement))
-
-    def slip(self, placement: Placement, motion: Motion, place: Place, radius: float) -> Numbers:
-        """Return the rate of slip of a rim or ball around a place (m/s): along the face in the plane, else a vector."""
+    def gap(self, placement: Placement, tip: Tip) -> Numbers:
+        """Return the height of what touches above the face (m), shape ()."""
         n = self.normal_in(placement)
+        return dot(n, tip.place.at(placement) - self.at.at(placement)) + dot(n, tip.lever(placement, n))
+
+    def slip(self, placement: Placement, motion: Motion, tip: Tip) -> Numbers:
+        """Return the rate of slip of what touches (m/s): along the face in the plane, else a vector."""
+        n, place = self.normal_in(placement), tip.place
         relative = place.velocity(placement, motion) - self.at.velocity(placement, motion)
-        spin = spin_of(motion, place.body) if radius else 0.0
+        spin = spin_of(motion, place.body) if tip.size else 0.0
         if n.shape[-1] == 2:
             # The points of a face move along it as one, so that its turning does not enter.
-            return dot(-across(n), relative) + radius * spin
+            return dot(-across(n), relative) + tip.radius * spin
+        if tip.size:
+            relative = relative + cross(np.asarray(spin), tip.lever(placement, n))
         inside: Numbers = relative - n * dot(n, relative)[..., None]
-        return inside - radius * cross(np.asarray(spin), n) if radius else inside
+        return inside
 
 
 @dataclass(frozen=True)

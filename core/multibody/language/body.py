@@ -81,8 +81,10 @@ class SceneBody:
 
     @property
     def round(self) -> bool:
-        """Whether its shape is a disc or a ball whose centre is the centre of mass."""
+        """Whether its shape is a disc of the plane or a ball, whose centre is the centre of mass."""
         if not isinstance(self.shape, Mapping):
             return False
-        at = self.shape.get("at") or ()
-        return self.shape.get("kind") in ("disc", "ball") and isinstance(at, Sequence) and all(x == 0 for x in at)
+        at, kind = self.shape.get("at") or (), self.shape.get("kind")
+        if kind == "disc" and isinstance(self.at, Sequence) and len(self.at) == 3:
+            return False
+        return kind in ("disc", "ball") and isinstance(at, Sequence) and all(x == 0 for x in at)

@@ -45,6 +45,8 @@ class SurfaceConnection(Connection):
         for place in (self.place, self.a, self.b):
             if self.turns(place, surroundings):
                 yield place, "turn"
+            for aspect in ATTITUDE if surroundings.outlined(place) else ():
+                yield place, aspect
 
 
 @dataclass(frozen=True)
@@ -60,8 +62,8 @@ class Rolling(SurfaceConnection):
     kind: ClassVar[str] = "rolling"
 
     def turns(self, place: object, surroundings: Surroundings) -> bool:
-        """See `SurfaceConnection.turns`."""
-        return True
+        """See `SurfaceConnection.turns`; in space what is no ball rolls by its axes."""
+        return surroundings.plane or not surroundings.outlined(place)
 
 
 @dataclass(frozen=True)
@@ -96,11 +98,3 @@ class Contact(SurfaceConnection):
     def turns(self, place: object, surroundings: Surroundings) -> bool:
         """See `SurfaceConnection.turns`; in space a ball alone has friction that turns it."""
         return surroundings.plane or (self.friction is not None and surroundings.rim(place))
-
-    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
-        """See `Connection.aspects`."""
-        yield from super().aspects(surroundings)
-        for place in (self.place, self.a, self.b):
-            if surroundings.outlined(place):
-                for aspect in ATTITUDE:
-                    yield place, aspect

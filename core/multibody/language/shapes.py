@@ -1,7 +1,9 @@
 """Shapes of bodies: their outlines in the plane, their corners in space, and the inertia of homogeneous solids.
 
 An outline is a convex polygon with everything within a radius of it: a disc has one corner and a radius, a capsule two,
-a box four and no radius. What touches are then corners, edges and arcs, whatever the shape.
+a box four and no radius. What touches are then corners, edges and arcs, whatever the shape. In space there may be an
+ellipsoid about every corner in place of a ball: the rim of a disc is one whose third semi-axis is zero, and a cylinder
+has two of them.
 
 References
 ----------
@@ -12,7 +14,7 @@ bodies"). C. Steger, "On the calculation of arbitrary moments of polygons" (1996
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -40,13 +42,16 @@ class Outline:
     Attributes
     ----------
     corners : sequence of tuple of ball
-        In body axes from the centre of mass (m); in the plane counter-clockwise. None of other shapes.
+        In body axes from the centre of mass (m); in the plane counter-clockwise.
     radius : ball
         m.
+    semi_axes : tuple of ball
+        Of the ellipsoid about every corner, along the body axes (m); none where there is a ball.
     """
 
     corners: Sequence[Corner]
     radius: Ball = ZERO
+    semi_axes: tuple[Ball, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -70,13 +75,13 @@ class Shape:
 
     @property
     def round(self) -> bool:
-        """Whether it is a disc or a ball."""
-        return len(self.outline.corners) == 1
+        """Whether it is a disc of the plane or a ball."""
+        return len(self.outline.corners) == 1 and not self.outline.semi_axes
 
     @property
     def centred(self) -> bool:
         """Whether the centre of the solid is the centre of mass, up to the rounding of its corners."""
-        terms = [abs(float(x)) for corner in self.outline.corners for x in corner]
+        terms = [abs(float(x)) for corner in (*self.outline.corners, self.outline.semi_axes) for x in corner]
         size = max(terms, default=0.0) + float(self.outline.radius)
         return all(is_zero(x) or bool(abs(x) < CENTRED * size) for x in self.centroid)
 
@@ -134,6 +139,13 @@ class _Reader:
         """Return a shape from corners counted from its centre."""
         moved = [tuple(x + y for x, y in zip(corner, at, strict=True)) for corner in corners]
         return Shape(self.kind, Outline(moved, radius), moments, at)
+
+    def rounded(self, at: Corner, corners: Sequence[Corner], semi_axes: tuple[Ball, ...], *moments: Ball) -> Shape:
+        """Return a shape with an ellipsoid about every corner; one of equal semi-axes is a ball."""
+        found = self.shape(at, corners, semi_axes[0], *moments)
+        if all(is_zero(x - semi_axes[0]) for x in semi_axes):
+            return found
+        return replace(found, outline=replace(found.outline, radius=ZERO, semi_axes=semi_axes))
 
 
 def _disc(read: _Reader, at: Corner) -> Shape:
@@ -223,13 +235,13 @@ def _capsule_in_space(read: _Reader, at: Corner) -> Shape:
 
 def _disc_in_space(read: _Reader, at: Corner) -> Shape:
     r = read.size("radius")
-    return read.shape(at, [], ZERO, r * r / 4, r * r / 4, r * r / 2)
+    return read.rounded(at, [(ZERO, ZERO, ZERO)], (r, r, ZERO), r * r / 4, r * r / 4, r * r / 2)
 
 
 def _cylinder(read: _Reader, at: Corner) -> Shape:
     r, h = read.size("radius"), read.size("height")
-    across = r * r / 4 + h * h / 12
-    return read.shape(at, [], ZERO, across, across, r * r / 2)
+    across, ends = r * r / 4 + h * h / 12, [(ZERO, ZERO, -h / 2), (ZERO, ZERO, h / 2)]
+    return read.rounded(at, ends, (r, r, ZERO), across, across, r * r / 2)
 
 
 def _ellipsoid(read: _Reader, at: Corner) -> Shape:
@@ -239,7 +251,7 @@ def _ellipsoid(read: _Reader, at: Corner) -> Shape:
         if not x > 0:
             raise InvalidParameter((*path, i), "be greater than 0 m")
     squares = [x * x for x in axes]
-    return read.shape(at, [], ZERO, *((sum(squares, ZERO) - x) / 5 for x in squares))
+    return read.rounded(at, [(ZERO, ZERO, ZERO)], axes, *((sum(squares, ZERO) - x) / 5 for x in squares))
 
 
 Kinds = Mapping[str, tuple[tuple[str, ...], Callable[[_Reader, Corner], Shape]]]

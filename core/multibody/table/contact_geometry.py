@@ -50,7 +50,7 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
                 tangents=touching.tangents,
                 rolls=touching.rolls,
             )
-            for touching in contact_in_space(measures, connection, path, rubs=rubs)
+            for touching in contact_in_space(measures, connection, name, path, rubs=rubs)
         ]
     elif connection.measure == "turn":
         if rubs:

@@ -1,7 +1,7 @@
 """Geometry of contacts in space: corners and balls on planes, with two directions of slip; smooth balls on one another.
 
-On a plane through A with normal n the gap is n.(P - A) - R. The point of a ball that touches slips with
-v_P - v_A - R w x n, of which the components along two unit vectors e of the plane are e.(v_P - v_A) - R (n x e).w.
+On a plane through A with normal n the gap is n.(P - A) - h, with P a corner and h how far what is about it reaches
+below. The point that touches slips with its velocity, less that of A, along two unit vectors of the plane.
 """
 
 from __future__ import annotations
@@ -10,13 +10,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from core.errors import InvalidParameter, Path
-from core.multibody.algebra.directions import cross, perpendicular, unit
-from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.algebra.directions import perpendicular, unit
+from core.multibody.algebra.polynomials import (
+    ONE,
+    ZERO,
+    Ball,
+    LinearForm,
+    Poly,
+    combined,
+    constant,
+    degree,
+    difference,
+    dot,
+)
 from core.multibody.language.contacts import Contact
 from core.multibody.table.contact_places import Side, gap_of_rims, is_on, place_on, refuse_limits, two_sides
-from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.supports import Support, support
 
 
 @dataclass(frozen=True)
@@ -39,7 +50,7 @@ class Touching:
     rolls: bool
 
 
-def contact_in_space(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> list[Touching]:
+def contact_in_space(measures: Measures, connection: Contact, name: str, path: Path, *, rubs: bool) -> list[Touching]:
     """Return gaps and slips of a contact in space, by its corners.
 
     Raises
@@ -51,12 +62,12 @@ def contact_in_space(measures: Measures, connection: Contact, path: Path, *, rub
         raise InvalidParameter((*path, "measure"), 'be "gap" in space', remedy="describe a stop in the plane")
     refuse_limits(connection, path)
     if is_on(connection, path):
-        return _on(measures, connection, path, rubs=rubs)
+        return _on(measures, connection, name, path, rubs=rubs)
     first, second = two_sides(measures, connection, path)
     return _round(first, second, path, rubs=rubs)
 
 
-def _on(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> list[Touching]:
+def _on(measures: Measures, connection: Contact, name: str, path: Path, *, rubs: bool) -> list[Touching]:
     side, at, on = place_on(measures, connection, path)
     where = (*path, "on")
     if set(on) == {"radius"}:
@@ -71,36 +82,36 @@ def _on(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> l
             f'be left out on a plane that turns with "{at.body}": its directions of slip turn, too',
             remedy="describe the body without moments, as one that does not turn",
         )
-    return [_on_plane(measures, side, point, at, n, path, rubs=rubs) for point in side.points]
-
-
-def _on_plane(
-    measures: Measures, side: Side, point: Point, at: Point, n: Sequence[Ball], path: Path, *, rubs: bool
-) -> Touching:
-    """Return the contact of one corner or ball with a plane."""
-    where = (*path, "on")
-    d = [difference(x, y) for x, y in zip(point.at, at.at, strict=True)]
     normal = measures.coordinates.vector_of(at.body, n, where)
-    gap = combined((ONE, dot(normal, d)), (-side.radius, constant(ONE)))
+    reach = support(measures, name, side, normal, path, levers=rubs)
+    apart = [[difference(x, y) for x, y in zip(point.at, at.at, strict=True)] for point in side.points]
+    gaps = [combined((ONE, dot(normal, d)), (-ONE, reach.depth)) for d in apart]
     if not rubs:
-        return Touching(gap, None, None, side.round)
-    along = perpendicular(n, where)
-    slips = []
-    for e in along:
-        parts = [(constant(x), rate_of(d[i])) for i, x in enumerate(e) if not is_zero(x)]
-        if side.round:
-            frame = side.frame
-            if frame is None or frame.turns is None:
-                raise InvalidParameter(
-                    (*path, "friction"),
-                    "be left out of what is round in space and no ball that can turn",
-                    remedy="give a ball its moments of inertia; a capsule touches without friction",
-                )
-            lever = [-side.radius * x for x in cross(n, e)]
-            spin = {j: constant(x) for j, x in zip(frame.turns, lever, strict=True) if not is_zero(x)}
-            parts.append((constant(ONE), spin))
-        slips.append(sum_of_rates(*parts))
-    return Touching(gap, (slips[0], slips[1]), (along[0], along[1]), side.round)
+        return [Touching(gap, None, None, side.round) for gap in gaps]
+    tangents = perpendicular(n, where)
+    slips = [_slips(measures, f"{name}.slip.{k + 1}", reach, apart, e) for k, e in enumerate(tangents)]
+    return [
+        Touching(gap, (one, other), (tangents[0], tangents[1]), side.round)
+        for gap, one, other in zip(gaps, *slips, strict=True)
+    ]
+
+
+def _slips(
+    measures: Measures, name: str, reach: Support, apart: Sequence[Sequence[Poly]], e: Sequence[Ball]
+) -> list[LinearForm]:
+    """Return the rates of slip of all corners along a direction, as forms with constant coefficients.
+
+    Friction that turns with the slip takes its direction from such forms. Where the point that touches moves in the
+    body, a coordinate is added whose rate is the slip of the first corner; that of another differs as the corners do.
+    """
+    first = sum_of_rates(*reach.velocity(apart[0], e))
+    if any(degree(poly) > 0 for poly in first.values()):
+        index = measures.table.coordinate(name, "m", ZERO)
+        measures.roll(name.partition(".")[0], {**first, index: constant(-ONE)})
+        first = {index: constant(ONE)}
+    fixed = list(map(constant, e))
+    beside = [rate_of(difference(dot(fixed, d), dot(fixed, apart[0]))) for d in apart]
+    return [sum_of_rates((constant(ONE), first), (constant(ONE), rate)) for rate in beside]
 
 
 def _round(a: Side, b: Side, path: Path, *, rubs: bool) -> list[Touching]:
@@ -111,7 +122,7 @@ def _round(a: Side, b: Side, path: Path, *, rubs: bool) -> list[Touching]:
             "be left out of what is round on both sides in space",
             remedy="let one of them be a plane, or describe rolling",
         )
-    if not b.single or not (a.single or b.radius < 0):
+    if not b.single or a.semi_axes or not (a.single or b.radius < 0):
         kinds = [side.frame.shape.kind for side in (a, b) if side.frame is not None and side.frame.shape is not None]
         raise InvalidParameter(
             path,

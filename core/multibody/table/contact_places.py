@@ -28,12 +28,15 @@ class Side:
         m; of a hollow below zero.
     frame : Frame or None
         Of a body that is named as a whole.
+    semi_axes : tuple of ball
+        Of the ellipsoid about every corner, in body axes (m); none where there is a ball.
     """
 
     points: Sequence[Point]
     offsets: Sequence[Corner]
     radius: Ball
     frame: Frame | None = None
+    semi_axes: tuple[Ball, ...] = ()
 
     @property
     def body(self) -> str | None:
@@ -43,12 +46,12 @@ class Side:
     @property
     def round(self) -> bool:
         """Whether it has a rim, so that sticking is rolling."""
-        return not is_zero(self.radius)
+        return bool(self.semi_axes) or not is_zero(self.radius)
 
     @property
     def single(self) -> bool:
-        """Whether it is a point, a disc or a ball."""
-        return len(self.points) == 1
+        """Whether it is a point, a disc of the plane or a ball."""
+        return len(self.points) == 1 and not self.semi_axes
 
 
 def refuse_limits(connection: Contact, path: Path) -> None:
@@ -75,13 +78,7 @@ def is_on(connection: Contact, path: Path, also: str = "") -> bool:
 
 
 def side_of(measures: Measures, place: Any, path: Path) -> Side:
-    """Return what a body touches with as a whole, or a place with the radius 0.
-
-    Raises
-    ------
-    InvalidParameter
-        For a shape whose contacts are not answered yet.
-    """
+    """Return what a body touches with as a whole, or a place with the radius 0."""
     coordinates = measures.coordinates
     point = coordinates.point(place, path)
     frame = coordinates.frames.get(place) if isinstance(place, str) else None
@@ -91,14 +88,8 @@ def side_of(measures: Measures, place: Any, path: Path) -> Side:
         assert frame.radius is not None
         return Side([point], [(ZERO,) * measures.dimension], frame.radius, frame)
     outline = frame.shape.outline
-    if not outline.corners:
-        raise InvalidParameter(
-            path,
-            f"be of another shape: contacts of a {frame.shape.kind} in space are not answered yet",
-            remedy="name a place of the body, or take a ball, a box or a capsule",
-        )
     points = [coordinates.carried(frame.name, corner, path) for corner in outline.corners]
-    return Side(points, outline.corners, outline.radius, frame)
+    return Side(points, outline.corners, outline.radius, frame, outline.semi_axes)
 
 
 def place_on(measures: Measures, connection: Contact, path: Path) -> tuple[Side, Point, Mapping[str, Any]]:

@@ -71,6 +71,14 @@ class Measures:
         self.table.rows.append(Row.held(name, measure))
         return len(self.table.rows) - 1
 
+    def affine(self, name: str, own: str, unit: str, measure: Poly) -> Poly:
+        """Return a measure as a polynomial of degree one, if need be by a coordinate that equals it."""
+        if degree(measure) <= 1:
+            return measure
+        index = self.table.coordinate(own, unit, evaluated(measure, self.table.q))
+        self.hold(name, difference(coordinate(index), measure))
+        return coordinate(index)
+
     def roll(self, name: str, rates: LinearForm) -> int:
         """Add a combination of rates that stays zero and return the number of its row."""
         self.table.rows.append(Row(name, None, rates))
@@ -246,10 +254,7 @@ class Measures:
         tangent = self.coordinates.vector_of(at.body, [cosine, sine], where)
         normal = self.coordinates.vector_of(at.body, [-sine, cosine], where)
         x, y = dot(tangent, d), dot(normal, d)
-        if degree(x) > 1:
-            first = self.table.coordinate(f"{name}.along", "m", evaluated(x, self.table.q))
-            self.hold(name, difference(coordinate(first), x))
-            x = coordinate(first)
+        x = self.affine(name, f"{name}.along", "m", x)
         row = self.hold(name, combined((ONE, y), (-curvature / 2, product(x, x))))
         if at.body is None:
             # The gradient is normal - curvature x tangent, and the multiplier goes with it.

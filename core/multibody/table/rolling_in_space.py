@@ -1,4 +1,4 @@
-"""Rolling without slip in space: a ball on a plane, which may turn like a table, and on or in a cylinder or a sphere.
+"""Rolling without slip in space: on a plane, and a ball on or in a cylinder or a sphere.
 
 With n the unit vector from the surface to the centre C, the ball touches at C - R n, and v_C - R w x n is the velocity
 of the surface there. The angular velocity w in space enters by three coordinates whose rates it is: a ball with equal
@@ -25,10 +25,11 @@ from core.multibody.algebra.polynomials import (
     is_zero,
 )
 from core.multibody.language.contacts import Rolling
-from core.multibody.table.formulas_of_time import clock
+from core.multibody.table.contact_places import Side, side_of
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import COMPONENTS, Measures
 from core.multibody.table.rolling import rate_of, rolling_in_plane, sum_of_rates
+from core.multibody.table.rolling_on_planes import roll_on_plane
 from core.multibody.table.rows import add_rows
 from core.multibody.table.table import Row
 
@@ -42,36 +43,56 @@ def rolling(connection: Rolling, measures: Measures, name: str, path: Path) -> N
 
 
 def rolling_in_space(measures: Measures, name: str, connection: Rolling, path: Path) -> None:
-    """Add the rows of a ball that rolls.
+    """Add the rows of what rolls.
 
     Raises
     ------
     InvalidParameter
-        Where no ball or no surface is named, or the ball is not on the surface.
+        Where nothing that rolls or no surface is named, or what rolls is not on the surface.
     """
     place, on = connection.place, connection.on
     if place is None or on is None or connection.a is not None or connection.b is not None:
         raise InvalidParameter(path, "have place and on: bodies that roll on one another in space are not answered yet")
-    centre = measures.coordinates.point(place, (*path, "place"))
-    frame = measures.coordinates.frames[centre.body] if centre.body is not None else None
-    if frame is None or frame.radius is None or frame.turns is None:
-        raise InvalidParameter((*path, "place"), "belong to a body with a radius and moments of inertia")
+    side = _side(measures, place, (*path, "place"))
     where = (*path, "on")
     if not isinstance(on, Mapping) or "at" not in on:
         raise InvalidParameter((*where, "at"), "be given")
     at = measures.coordinates.point(on["at"], (*where, "at"))
-    if at.body is not None and (at.body == centre.body or measures.coordinates.frames[at.body].orients):
+    if at.body is not None and (at.body == side.body or measures.coordinates.frames[at.body].orients):
         raise InvalidParameter((*where, "at"), "be a point of the ground, or of another body that does not turn")
     keys = set(on) - {"at"}
-    surface = _Surface(measures, name, centre, frame.radius, list(frame.turns), at, where)
     if "normal" in keys and keys <= {"normal", "rate"}:
-        surface.plane(on["normal"], on.get("rate", 0))
-    elif keys == {"direction", "radius"}:
-        surface.cylinder(on["direction"], on["radius"])
-    elif keys == {"radius"}:
-        surface.sphere(on["radius"])
-    else:
+        roll_on_plane(measures, name, side, at, on["normal"], on.get("rate", 0), where)
+        return
+    if keys not in ({"direction", "radius"}, {"radius"}):
         raise InvalidParameter(where, "have at, and one of: normal (and rate); direction and radius; radius")
+    if side.frame is None or side.frame.turns is None:
+        raise InvalidParameter(
+            where, "be a plane, of what is no ball about its centre of mass", remedy='have at and "normal"'
+        )
+    surface = _Surface(measures, name, side.points[0], side.radius, list(side.frame.turns), at, where)
+    if "direction" in keys:
+        surface.cylinder(on["direction"], on["radius"])
+    else:
+        surface.sphere(on["radius"])
+
+
+def _side(measures: Measures, place: str, path: Path) -> Side:
+    """Return what rolls: a ball about a place of its body, or a body whose shape is a disc, an ellipsoid or a ball."""
+    centre = measures.coordinates.point(place, path)
+    frame = measures.coordinates.frames[centre.body] if centre.body is not None else None
+    if frame is not None and frame.name == place and frame.shape is not None and frame.radius is None:
+        side = side_of(measures, place, path)
+        if side.round and len(side.points) == 1:
+            return side
+        raise InvalidParameter(
+            path,
+            f"be a disc, an ellipsoid or a ball: a {frame.shape.kind} touches at several places",
+            remedy="describe a contact with friction, which rolls where it sticks",
+        )
+    if frame is None or frame.radius is None or frame.turns is None:
+        raise InvalidParameter(path, "belong to a body with a radius, or a shape that rolls, and moments of inertia")
+    return Side([centre], [()], frame.radius, frame)
 
 
 class _Surface:
@@ -83,25 +104,6 @@ class _Surface:
         self.measures, self.name, self.radius, self.turns, self.path = measures, name, radius, turns, path
         self.d = [difference(x, y) for x, y in zip(centre.at, at.at, strict=True)]
         self.rates = [rate_of(x) for x in self.d]
-
-    def plane(self, normal: object, rate: object) -> None:
-        """Roll on a plane, which turns about its normal through the given place."""
-        measures, name = self.measures, self.name
-        n = unit(measures.numerals.vector(normal, (*self.path, "normal"), 3), (*self.path, "normal"))
-        gap = measures.hold(name, combined((ONE, self._along(n)), (-self.radius, constant(ONE))))
-        measures.force(f"{name}.normal", [(gap, constant(ONE))])
-        turning = measures.numerals.number(rate, (*self.path, "rate"))
-        rows, across = [], perpendicular(n, self.path)
-        for e in across:
-            parts = [*self._velocity(e), self._spin([-self.radius * x for x in cross(n, e)])]
-            if not is_zero(turning):
-                # The surface moves with turning n x d, of which this is the component along e.
-                carried = combined(*((-turning * x, self.d[i]) for i, x in enumerate(cross(e, n))))
-                parts.append((carried, {clock(measures): constant(ONE)}))
-            rows.append(measures.roll(name, sum_of_rates(*parts)))
-        for i, axis in enumerate(COMPONENTS):
-            terms = [(row, constant(e[i])) for row, e in zip(rows, across, strict=True) if not is_zero(e[i])]
-            measures.force(f"{name}.friction.{axis}", terms)
 
     def cylinder(self, direction: object, radius: object) -> None:
         """Roll on a cylinder, or inside it where the radius is negative."""

@@ -273,7 +273,7 @@ def _one_sided(one: Definition, placement: Placement, still: Motion, reader: Rea
     elif isinstance(one, Stop):
         closes, opens = "stop", "release"
     elif isinstance(one, OnFace):
-        rolls = one.radius > 0.0
+        rolls = one.tip.size > 0.0
     elif isinstance(one, OnOutline):
         rolls = one.reach > 0.0
     elif isinstance(one, OnRound):

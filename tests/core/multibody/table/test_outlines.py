@@ -121,9 +121,9 @@ def test_overlaps_are_refused_with_their_depth() -> None:
 
 
 def test_what_is_not_answered_in_space_is_named() -> None:
-    floor = {"kind": "contact", "place": "c", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+    hollow = {"kind": "contact", "place": "c", "on": {"at": [0, 0, 0], "radius": -9}}
     shape = {"kind": "cylinder", "radius": 1, "height": 1}
-    scene = {"bodies": {"c": {"mass": 1, "at": [0, 0, 3], "shape": shape}}, "connections": [floor]}
+    scene = {"bodies": {"c": {"mass": 1, "at": [0, 0, 3], "shape": shape}}, "connections": [hollow]}
     with pytest.raises(InvalidParameter, match="cylinder in space"):
         solve_scene(read(scene))
 

@@ -32,7 +32,37 @@ GRAZES_THE_CAPS = pair(
 )
 
 
-@pytest.mark.parametrize(("scene", "end"), [(COLLIDE, 0.5), (GRAZES_THE_CAPS, 0.6)])
+FLOOR = {"name": "f", "place": "a", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+LEANS = [[1, 0, 0], [0, "-3/5", "4/5"], [0, "-4/5", "-3/5"]]
+
+
+def on_a_plane(body: dict[str, Any], **connection: Any) -> dict[str, Any]:
+    return {"gravity": [0, 0, -9.81], "bodies": {"a": body}, "connections": [FLOOR | connection]}
+
+
+COIN_ROLLS = on_a_plane(
+    {"mass": 1, "shape": {"kind": "disc", "radius": 0.5}, "at": [0, 0, 0.4], "axes": LEANS}
+    | {"angular_velocity": [0.1, 1, 6]},
+    kind="rolling",
+)
+CYLINDER_LANDS = on_a_plane(
+    {"mass": 1, "shape": {"kind": "cylinder", "radius": 0.2, "height": 0.3}, "at": [0, 0, 0.5], "axes": LEANS}
+    | {"angular_velocity": [0.3, 1, 2], "velocity": [1, 0, 0]},
+    kind="contact",
+    restitution=0.4,
+)
+EGG_SLIDES = on_a_plane(
+    {"mass": 1, "shape": {"kind": "ellipsoid", "semi_axes": [0.1, 0.12, 0.15], "at": [0.01, 0, 0]}, "at": [0, 0, 0.15]}
+    | {"moments": ["0.004", "0.005", "0.003"], "angular_velocity": [1, 2, 9], "velocity": [1, 0, 0.02]},
+    kind="contact",
+    friction=0.3,
+)
+
+
+@pytest.mark.parametrize(
+    ("scene", "end"),
+    [(COLLIDE, 0.5), (GRAZES_THE_CAPS, 0.6), (COIN_ROLLS, 0.5), (CYLINDER_LANDS, 0.4), (EGG_SLIDES, 0.05)],
+)
 def test_the_two_engines_agree_about_shapes(scene: dict[str, Any], end: float) -> None:
     verdict = compared(scene, [0.0, end / 2, end])
     assert verdict.differences == []
