@@ -33,11 +33,12 @@ class Connection(ZttpProtocol):
     """
 
     _late: asyncio.TimerHandle | None = None
+    _refused = False
     _out: OneWrite
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Wait for the first request."""
-        self._out = OneWrite(transport, self.loop, self.timeout_keep_alive)
+        self._out = OneWrite(transport, self.loop, self.timeout_keep_alive, self._unread)
         super().connection_made(self._out)  # type: ignore[arg-type]
         self._limit()
 
@@ -53,6 +54,9 @@ class Connection(ZttpProtocol):
 
     def data_received(self, data: bytes) -> None:
         """Pass bytes on; while they are not yet a request, the time that is left is not prolonged."""
+        if self.transport.is_closing():
+            self._out.drop(data)
+            return
         super().data_received(data)
         if self.cycle is not None and not self.cycle.response_complete:
             self._unlimit()
@@ -68,6 +72,7 @@ class Connection(ZttpProtocol):
 
     def send_400_response(self, msg: str) -> None:
         """Refuse what is no request, and close; of a request that is being answered, or was, nothing can be said."""
+        self._refused = True
         if self.cycle is not None and self.cycle.response_complete and self.cycle.more_body:
             self.transport.close()
             return
@@ -84,8 +89,12 @@ class Connection(ZttpProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """Stop waiting."""
         self._unlimit()
-        self._out.expect_nothing()
+        self._out.lost()
         super().connection_lost(exc)
+
+    def _unread(self) -> bool:
+        """Return whether the client may still be sending what is not read: it was refused, or answered early."""
+        return self._refused or (self.cycle is not None and self.cycle.more_body)
 
     def _limit(self) -> None:
         self._late = self.loop.call_later(self.timeout_keep_alive, self.transport.close)

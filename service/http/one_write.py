@@ -1,28 +1,60 @@
-"""What a connection writes: head and body of a response in one, and none of it left for ever to who does not read.
+"""What a connection writes: head and body of a response in one, and none of it left for ever, or lost.
 
 ASGI sends them one by one. Each write is a system call and a packet, and wakes the client: where the cores are shared,
 the client then takes the core from the server to read half of the answer. uvicorn waits without limit for a client to
 take what is left when a connection closes, or when the next answer is due.
+
+A socket that closes with bytes in it that nobody has read, or receives more afterwards, resets the connection, and the
+client may lose what it has not read yet (RFC 9112, 9.6). So what a client still sends is read and dropped for a while.
 """
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from typing import Any
+
+LINGERING = 2.0
+"""Seconds for which a closing connection drops what the client still sends: ten round trips around the world."""
+
+MOST_DROPPED = 16_000_000
+"""Bytes that are dropped at most in this time: two of the longest bodies that are answered by default."""
 
 
 class OneWrite:
-    """A transport that holds the first part of what is written until the second, and no longer than the loop's turn."""
+    """A transport that holds the first part of what is written until the second, and no longer than the loop's turn.
 
-    __slots__ = ("_first", "_later", "_look", "_loop", "_patience", "_transport")
+    Parameters
+    ----------
+    transport : asyncio.Transport
+        Of the connection.
+    loop : asyncio.AbstractEventLoop
+        Which turns.
+    patience : float
+        Seconds for which a client may take nothing of what is left.
+    sending : callable
+        Returns whether the client may still be sending what is not going to be read.
+    """
 
-    def __init__(self, transport: asyncio.Transport, loop: asyncio.AbstractEventLoop, patience: float) -> None:
+    __slots__ = ("_bearable", "_end", "_first", "_later", "_look", "_loop", "_patience", "_sending", "_transport")
+
+    def __init__(
+        self,
+        transport: asyncio.Transport,
+        loop: asyncio.AbstractEventLoop,
+        patience: float,
+        sending: Callable[[], bool],
+    ) -> None:
         self._transport, self._later, self._first = transport, loop.call_soon, b""
-        self._loop, self._patience = loop, patience
+        self._loop, self._patience, self._sending = loop, patience, sending
         self._look: asyncio.TimerHandle | None = None
+        self._end: asyncio.TimerHandle | None = None
+        self._bearable = MOST_DROPPED
 
     def write(self, data: bytes) -> None:
-        """Hold the first part; write it with the second."""
+        """Hold the first part; write it with the second; nothing behind the end."""
+        if self._end is not None:
+            return
         if self._first:
             data, self._first = self._first + data, b""
             self._transport.write(data)
@@ -31,8 +63,35 @@ class OneWrite:
             self._later(self._flush)
 
     def close(self) -> None:
-        """Write what is held, and close when the client has taken it, or takes no more."""
+        """Write what is held, and close when the client has taken it, or takes no more, and sends no more."""
         self._flush()
+        if self._end is not None:
+            return
+        if self._sending() and self._transport.can_write_eof() and not self._transport.is_closing():
+            self._transport.write_eof()
+            if not self._transport.is_reading():
+                self._transport.resume_reading()
+            self._end = self._loop.call_later(LINGERING, self._close)
+        else:
+            self._close()
+
+    def is_closing(self) -> bool:
+        """Return whether nothing is answered any more."""
+        return self._end is not None or self._transport.is_closing()
+
+    def drop(self, data: bytes) -> None:
+        """Read what comes behind the end; no more of it than is bearable."""
+        self._bearable -= len(data)
+        if self._bearable < 0:
+            self._close()
+
+    def lost(self) -> None:
+        """Wait for nothing: the connection is gone."""
+        self.expect_nothing()
+        if self._end is not None:
+            self._end.cancel()
+
+    def _close(self) -> None:
         self._transport.close()
         if self._look is None:
             self.expect_progress()

@@ -39,7 +39,7 @@ class Written:
 @pytest.fixture
 async def pair() -> tuple[Any, Written]:
     written = Written()
-    return OneWrite(written, asyncio.get_running_loop(), 0.02), written  # type: ignore[arg-type]
+    return OneWrite(written, asyncio.get_running_loop(), 0.02, lambda: False), written  # type: ignore[arg-type]
 
 
 async def test_head_and_body_are_one_write(pair: tuple[Any, Written]) -> None:
@@ -97,7 +97,7 @@ class Clock:
 
 async def test_a_closed_connection_of_which_nothing_more_is_taken_is_aborted() -> None:
     written, clock = Written(), Clock()
-    transport = OneWrite(written, clock, 0.02)  # type: ignore[arg-type]
+    transport = OneWrite(written, clock, 0.02, lambda: False)  # type: ignore[arg-type]
     written.left = 100
     transport.close()
     for left in (90, 80, 70):
@@ -111,7 +111,7 @@ async def test_a_closed_connection_of_which_nothing_more_is_taken_is_aborted() -
 
 async def test_a_connection_that_is_read_to_its_end_is_not_aborted() -> None:
     written, clock = Written(), Clock()
-    transport = OneWrite(written, clock, 0.02)  # type: ignore[arg-type]
+    transport = OneWrite(written, clock, 0.02, lambda: False)  # type: ignore[arg-type]
     written.left = 100
     transport.expect_progress()
     written.left = 0

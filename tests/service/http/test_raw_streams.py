@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 import uvicorn
 
+from service.http import one_write
 from service.http.connection import Connection
 from service.responses.json_stream import Document
-from tests.service.conftest import inline_toys
+from tests.service.conftest import PATIENCE, inline_toys
 from tests.service.toy_routes import GOOD
 
 pytestmark = pytest.mark.anyio
@@ -80,7 +81,7 @@ async def heard(port: int, *pieces: bytes) -> bytes:
             writer.write(piece)
             await writer.drain()
             await asyncio.sleep(0)
-        return await asyncio.wait_for(reader.read(), 20)
+        return await asyncio.wait_for(reader.read(), PATIENCE)
     finally:
         writer.close()
 
@@ -237,9 +238,66 @@ async def test_what_follows_an_early_answer_and_cannot_be_read_ends_the_connecti
         writer.write(early)
         assert statuses(await reader.readuntil(b"}")) == [415]
         writer.write(b"ZZ\r\n")
-        assert await asyncio.wait_for(reader.read(), 20) == b""
+        assert await asyncio.wait_for(reader.read(), PATIENCE) == b""
         writer.close()
     assert failures == []
+
+
+async def answered_while_sending(port: int, begin: bytes, more: bytes) -> bytes:
+    """Send, wait until the server has answered, send more, and read only then until the end of the connection."""
+    loop = asyncio.get_running_loop()
+    with socket.create_connection(("127.0.0.1", port)) as client:
+        client.setblocking(False)
+        await loop.sock_sendall(client, begin)
+        answered = asyncio.Event()
+        loop.add_reader(client, answered.set)
+        await asyncio.wait_for(answered.wait(), PATIENCE)
+        loop.remove_reader(client)
+        # A connection that is closed already resets at the first of these and breaks at the second.
+        for piece in (more[:1000], more[1000:]):
+            await loop.sock_sendall(client, piece)
+            await asyncio.sleep(0.05)
+        received = b""
+        while part := await asyncio.wait_for(loop.sock_recv(client, 65536), PATIENCE):
+            received += part
+    return received
+
+
+@pytest.mark.parametrize(
+    ("begin", "status"),
+    [
+        (b"GET /" + b"a" * 40_000, 400),
+        (HEAD + b"x: " + b"y" * 40_000, 400),
+        (HEAD + b"content-length: 90000000\r\n\r\n{", 413),
+        (HEAD + b"expect: 100-continue\r\ncontent-length: 90000000\r\n\r\n", 413),
+    ],
+    ids=["a target", "a field", "a body", "a body that was not asked for"],
+)
+async def test_a_client_that_is_still_sending_can_read_why_it_is_refused(begin: bytes, status: int) -> None:
+    """RFC 9112, 9.6: the server ends its side first, and drops for a while what is still sent."""
+    async with serving() as port:
+        received = await answered_while_sending(port, begin, b"a" * 100_000)
+    assert statuses(received) == [status]
+    assert received.endswith(b"}")
+
+
+@pytest.mark.parametrize(("bound", "value"), [("MOST_DROPPED", 50_000), ("LINGERING", 0.01)])
+async def test_what_is_sent_to_a_closing_connection_is_not_dropped_for_ever(
+    monkeypatch: pytest.MonkeyPatch, bound: str, value: float
+) -> None:
+    monkeypatch.setattr(one_write, "LINGERING", 600.0)
+    monkeypatch.setattr(one_write, bound, value)
+    async with serving() as port:
+        _, writer = await asyncio.open_connection("127.0.0.1", port)
+
+        async def send_for_ever() -> None:
+            while True:
+                writer.write(b"GET /" + b"a" * 20_000)
+                await writer.drain()
+                await asyncio.sleep(0.01)
+
+        with pytest.raises(ConnectionError):
+            await asyncio.wait_for(send_for_ever(), PATIENCE)
 
 
 async def test_a_client_that_takes_nothing_is_not_waited_for_for_ever() -> None:
@@ -252,7 +310,7 @@ async def test_a_client_that_takes_nothing_is_not_waited_for_for_ever() -> None:
             await loop.sock_sendall(client, flood)
             await asyncio.sleep(3.0)
             received, whole = 0, b""
-            while more := await asyncio.wait_for(loop.sock_recv(client, 1 << 20), 20):
+            while more := await asyncio.wait_for(loop.sock_recv(client, 1 << 20), PATIENCE):
                 received, whole = received + len(more), whole + more
         assert 0 < len(statuses(whole)) < 400
 
@@ -303,7 +361,7 @@ async def test_unfinished_bodies_are_bounded_together() -> None:
             writer.write(HEAD + b"content-length: 500000\r\n\r\n" + b" " * 400_000)
             waiting.append((reader, writer))
         finished = [asyncio.create_task(reader.read()) for reader, _ in waiting]
-        (first, *_), _ = await asyncio.wait(finished, timeout=120, return_when=asyncio.FIRST_COMPLETED)
+        (first, *_), _ = await asyncio.wait(finished, timeout=PATIENCE, return_when=asyncio.FIRST_COMPLETED)
         assert statuses(first.result()) == [429]
         assert sum(one.done() for one in finished) == 1
         for _, writer in waiting:
@@ -334,5 +392,5 @@ async def test_nothing_more_is_written_for_a_client_that_has_left(
         writer.write(ask(endless) + behind)
         assert (await reader.readline()) == b"HTTP/1.1 200 OK\r\n"
         writer.transport.abort()
-        await asyncio.wait_for(ended.wait(), 20)
+        await asyncio.wait_for(ended.wait(), PATIENCE)
     assert taken < 150
