@@ -12,6 +12,7 @@ import pytest
 
 from examples import grade_homework
 from examples.ask import names, request_of
+from tests.service.conftest import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "grading.md"
@@ -118,6 +119,6 @@ def flat(value):
 def test_the_variants_of_the_page_exist(service):
     (block,) = re.findall(r"```json\n(.*?)```", PAGE.read_text(), re.DOTALL)
     headers = {"Content-Type": "application/json"}
-    with urlopen(Request(f"{service}/v1/variants", block.encode(), headers), timeout=60) as response:
+    with urlopen(Request(f"{service}/v1/variants", block.encode(), headers), timeout=PATIENCE) as response:
         answer = json.load(response)
     assert len(answer["variants"]) == json.loads(block)["count"]

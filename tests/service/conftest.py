@@ -23,6 +23,10 @@ from service.routing import PostRoute
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[2]
+PATIENCE = 240.0
+"""Seconds after which what a test waits for will not come: more than any load of a machine makes of moments, and less
+than pytest's own limit, which would end the process."""
+
 TOYS = "tests.service.toy_routes:table"
 
 
@@ -93,7 +97,7 @@ class Server:
             self.log.extend(lines)
 
     def wait_until_ready(self) -> None:
-        deadline = time.monotonic() + 300
+        deadline = time.monotonic() + PATIENCE
         while not self._ready():
             assert time.monotonic() < deadline
             time.sleep(0.05)
@@ -106,12 +110,12 @@ class Server:
 
     def get(self, path: str) -> httpx.Response:
         """Return what is at a path; certificates, which nothing here has, would take 40 ms to load each time."""
-        return httpx.get(self.url + path, verify=False)
+        return httpx.get(self.url + path, verify=False, timeout=PATIENCE)
 
     def stop(self, told: signal.Signals = signal.SIGTERM) -> str:
         self.process.send_signal(told)
-        self.process.wait(timeout=30)
-        self._reading.join(timeout=30)
+        self.process.wait(timeout=PATIENCE)
+        self._reading.join(timeout=PATIENCE)
         return "".join(self.log)
 
 

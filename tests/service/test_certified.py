@@ -17,7 +17,7 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.routes import questions
 from tests.oracles.free_rotation import flip_interval, period, reference_angular_velocity, reference_attitude
-from tests.service.conftest import Server, client_of, inline_service
+from tests.service.conftest import PATIENCE, Server, client_of, inline_service
 
 SERVICE = inline_service()
 TRAJECTORY, PRECESSION, STABILITY, ELLIPSOID = (
@@ -423,7 +423,7 @@ def test_none_runs_in_the_server() -> None:
 
 def test_over_a_socket_from_a_compute_process(server: Server) -> None:
     question = QUESTION | {"digits": 30, "times": {"start": 0, "stop": 20, "count": 200}}
-    found = httpx.post(server.url + TRAJECTORY, json=question, timeout=30)
+    found = httpx.post(server.url + TRAJECTORY, json=question, timeout=PATIENCE)
     assert found.status_code == 200
     assert len(found.json()["angular_velocity"]) == 200
-    assert httpx.post(server.url + TRAJECTORY, json=question, timeout=30).content == found.content
+    assert httpx.post(server.url + TRAJECTORY, json=question, timeout=PATIENCE).content == found.content

@@ -20,7 +20,7 @@ from service.requests.described_scene import DescribedSceneRequest
 from service.requests.request_reader import Limits, Reader
 from service.routes import questions
 from service.routing import PostRoute
-from tests.service.conftest import Server, client_of, inline_service
+from tests.service.conftest import PATIENCE, Server, client_of, inline_service
 
 PATH = "/v1/scenes"
 EXAMPLES = Path(__file__).parents[2] / "examples" / "scenes"
@@ -587,9 +587,9 @@ class TestPlan:
 
 
 def test_a_server_answers_in_its_compute_processes(server: Server) -> None:
-    answer = httpx.post(f"{server.url}{PATH}", json=PENDULUM | {"times": [0, 1]}).json()
+    answer = httpx.post(f"{server.url}{PATH}", json=PENDULUM | {"times": [0, 1]}, timeout=PATIENCE).json()
     assert answer["model"]["name"] == "one period"
-    refused = httpx.post(f"{server.url}{PATH}", json=of_rod(b="p"))
+    refused = httpx.post(f"{server.url}{PATH}", json=of_rod(b="p"), timeout=PATIENCE)
     assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/connections/0")
 
 

@@ -19,7 +19,7 @@ import pytest
 
 from service.problems import REGISTRY
 from tests.service import hostile
-from tests.service.conftest import ROOT, Server
+from tests.service.conftest import PATIENCE, ROOT, Server
 
 CONFIGURATION = ROOT / "docs" / "nginx" / "polhode.conf"
 NGINX, OPENSSL = shutil.which("nginx"), shutil.which("openssl")
@@ -69,7 +69,7 @@ def proxy(server: Server, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
         [NGINX, "-p", str(folder), "-c", str(folder / "polhode.conf")], stderr=subprocess.PIPE, text=True
     )
     try:
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + PATIENCE
         while True:
             try:
                 socket.create_connection(("127.0.0.1", port), timeout=1).close()
@@ -81,7 +81,7 @@ def proxy(server: Server, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
         yield port
     finally:
         process.terminate()
-        process.communicate(timeout=60)
+        process.communicate(timeout=PATIENCE)
 
 
 def tls() -> ssl.SSLContext:
@@ -92,7 +92,7 @@ def tls() -> ssl.SSLContext:
 
 
 def post(port: int, body: bytes, **headers: str) -> tuple[int, Message, bytes]:
-    connection = http.client.HTTPSConnection("127.0.0.1", port, timeout=60, context=tls())
+    connection = http.client.HTTPSConnection("127.0.0.1", port, timeout=PATIENCE, context=tls())
     try:
         connection.request("POST", PATH, body, {"content-type": "application/json", **headers})
         response = connection.getresponse()
@@ -123,7 +123,7 @@ def test_questions_are_answered_over_tls(proxy: int) -> None:
 
 @needs_nginx
 def test_large_bodies_are_refused_unread(proxy: int) -> None:
-    with socket.create_connection(("127.0.0.1", proxy), timeout=60) as plain, tls().wrap_socket(plain) as secure:
+    with socket.create_connection(("127.0.0.1", proxy), timeout=PATIENCE) as plain, tls().wrap_socket(plain) as secure:
         head = f"POST {PATH} HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\n"
         secure.sendall(f"{head}content-length: 9000000\r\n\r\n".encode())
         received = b""
@@ -139,7 +139,7 @@ def test_too_many_connections_of_an_address_are_a_problem(proxy: int) -> None:
     with ExitStack() as stack:
         # As many as the configuration allows, each with a request that is under way.
         for _ in range(50):
-            plain = stack.enter_context(socket.create_connection(("127.0.0.1", proxy), timeout=60))
+            plain = stack.enter_context(socket.create_connection(("127.0.0.1", proxy), timeout=PATIENCE))
             secure = stack.enter_context(tls().wrap_socket(plain))
             secure.sendall(f"POST {PATH} HTTP/1.1\r\nhost: x\r\ncontent-length: 9\r\n\r\n".encode())
         status, headers, content = post(proxy, hostile.text())
@@ -157,10 +157,10 @@ def test_large_headers_are_refused(proxy: int) -> None:
 @needs_nginx
 def test_slow_headers_are_let_go(proxy: int, server: Server) -> None:
     since = time.monotonic()
-    with socket.create_connection(("127.0.0.1", proxy), timeout=60) as plain, tls().wrap_socket(plain) as secure:
+    with socket.create_connection(("127.0.0.1", proxy), timeout=PATIENCE) as plain, tls().wrap_socket(plain) as secure:
         secure.sendall(b"POST / HTTP/1.1\r\nhost: x\r\n")
         closed = False
-        while not closed and time.monotonic() - since < 15:
+        while not closed and time.monotonic() - since < PATIENCE:
             time.sleep(0.3)
             try:
                 secure.sendall(b"x: y\r\n")

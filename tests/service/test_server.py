@@ -21,7 +21,7 @@ import pytest
 from polhode_client import Client, Refused
 
 from tests.service import hostile
-from tests.service.conftest import ROOT, Server
+from tests.service.conftest import PATIENCE, ROOT, Server
 
 PATH = "/v1/rotation/trajectory"
 JSON = {"content-type": "application/json"}
@@ -29,7 +29,7 @@ T_HANDLE = {"kind": "principal-moments", "moments": [795.792181070, 713.50925925
 
 
 def post(server: Server, body: bytes, headers: dict[str, str] = JSON) -> tuple[int, dict[str, str], bytes]:
-    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=120)
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=PATIENCE)
     try:
         connection.request("POST", PATH, body, headers)
         response = connection.getresponse()
@@ -40,7 +40,7 @@ def post(server: Server, body: bytes, headers: dict[str, str] = JSON) -> tuple[i
 
 def raw(server: Server, *pieces: bytes) -> bytes:
     """Send bytes and return all that comes back."""
-    with socket.create_connection(("127.0.0.1", server.port), timeout=60) as connection:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE) as connection:
         for piece in pieces:
             connection.sendall(piece)
         received = b""
@@ -144,7 +144,7 @@ GOOD = b"POST /v1/rotation/trajectory HTTP/1.1\r\nhost: x\r\ncontent-type: appli
     ids=lambda value: value[-30:].decode("latin-1"),
 )
 def test_hostile_bytes_never_hurt(server: Server, request_bytes: bytes) -> None:
-    with socket.create_connection(("127.0.0.1", server.port), timeout=60) as connection:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE) as connection:
         connection.sendall(request_bytes)
         connection.shutdown(socket.SHUT_WR)
         received = b""
@@ -196,7 +196,7 @@ def test_health_is_answered_while_every_core_computes(server: Server) -> None:
 def test_a_client_that_leaves_does_no_harm(server: Server) -> None:
     body = json.dumps(hostile.QUESTION | {"times": {"start": 0, "stop": 1, "count": 1_000_000}}).encode()
     for _ in range(3):
-        with socket.create_connection(("127.0.0.1", server.port), timeout=60) as connection:
+        with socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE) as connection:
             connection.sendall(GOOD + b"content-length: %d\r\n\r\n" % len(body) + body)
             connection.recv(1000)
     assert post(server, hostile.text())[0] == 200
@@ -227,7 +227,7 @@ def stopped_cleanly(server: Server, scratch: Path, signalled: signal.Signals) ->
 
 def until_metrics_have(server: Server, *lines: str) -> None:
     """Wait until the metrics have lines: what other processes count is known a second later."""
-    until = time.monotonic() + 60
+    until = time.monotonic() + PATIENCE
     while not all(line in server.get("/metrics").text for line in lines):
         assert time.monotonic() < until, server.get("/metrics").text
         time.sleep(0.05)
@@ -278,7 +278,7 @@ def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_eve
     with ThreadPoolExecutor(4) as threads:
         flying = [threads.submit(post, server, heavy.encode()) for _ in range(4)]
         # Both have a long question by then, and the gauge says so.
-        until = time.monotonic() + 60
+        until = time.monotonic() + PATIENCE
         while "polhode_long 0.0" in server.get("/metrics").text:
             assert not all(one.done() for one in flying), [one.result() for one in flying]
             assert time.monotonic() < until
@@ -290,7 +290,7 @@ def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_eve
         with suppress(httpx.TransportError):
             if "polhode_long 0.0" in server.get("/metrics").text:
                 break
-        assert time.monotonic() < until + 60
+        assert time.monotonic() < until + PATIENCE
         time.sleep(0.1)
 
 

@@ -9,7 +9,7 @@ import urllib.error
 import urllib.request
 from typing import Any
 
-from tests.service.conftest import Server
+from tests.service.conftest import PATIENCE, Server
 
 PATH = "/v1/rotation/trajectory"
 LARGE = json.dumps(
@@ -24,7 +24,7 @@ LARGE = json.dumps(
 def asked(server: Server) -> tuple[int, dict[str, Any]]:
     request = urllib.request.Request(server.url + PATH, LARGE, {"content-type": "application/json"})
     try:
-        with urllib.request.urlopen(request, timeout=120) as response:
+        with urllib.request.urlopen(request, timeout=PATIENCE) as response:
             return response.status, json.load(response)
     except urllib.error.HTTPError as refusal:
         with refusal:
@@ -38,7 +38,7 @@ def test_unread_answers_are_counted_and_let_go() -> None:
         with socket.socket() as idle:
             # A small window, so that what the kernel takes off the server's hands is little.
             idle.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            idle.settimeout(30)
+            idle.settimeout(PATIENCE)
             idle.connect(("127.0.0.1", server.port))
             head = f"POST {PATH} HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\n"
             idle.sendall(f"{head}content-length: {len(LARGE)}\r\n\r\n".encode() + LARGE)
@@ -47,7 +47,7 @@ def test_unread_answers_are_counted_and_let_go() -> None:
             status, problem = asked(server)
             assert (status, problem["code"]) == (429, "too-busy")
             assert "max_held_bytes" in problem["detail"]
-            until = time.monotonic() + 30
+            until = time.monotonic() + PATIENCE
             while status == 429 and time.monotonic() < until:
                 time.sleep(0.2)
                 status, answer = asked(server)

@@ -14,7 +14,7 @@ import pytest
 
 from service.app import Service
 from service.http.keys import new_key
-from tests.service.conftest import client_of, inline_toys, toy_service
+from tests.service.conftest import PATIENCE, client_of, inline_toys, toy_service
 from tests.service.http.test_dispatch import JSON, scope, sending
 from tests.service.toy_routes import GOOD
 
@@ -24,7 +24,7 @@ LARGE = GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 500_000}}
 
 
 async def until(holds: Callable[[], Any]) -> None:
-    async with asyncio.timeout(120):
+    async with asyncio.timeout(PATIENCE):
         while not holds():
             await asyncio.sleep(0.002)
 
@@ -212,7 +212,7 @@ async def test_every_process_killed_again_and_again_loses_nothing(service: Servi
             while not service.compute.processes.ready:
                 await asyncio.sleep(0.01)
 
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE):
         await asyncio.gather(large(), large(), large(), little(), killing())
     assert len(outcomes) == 24
     assert set(outcomes) == {(200, ""), (503, "worker-lost")}

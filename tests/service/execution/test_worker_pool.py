@@ -27,11 +27,10 @@ from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, 
 from service.execution.process_starter import ProcessStarter
 from service.execution.worker_pool import MOST_LONG_OF_A_CLIENT, Processes
 from service.execution.worker_process import Process
+from tests.service.conftest import PATIENCE
 from tests.service.toy_processes import framed, main
 
 pytestmark = pytest.mark.anyio
-
-LONG = 60.0
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -58,7 +57,7 @@ async def warm(place: Path, size: int = 1) -> AsyncIterator[tuple[Processes, lis
     lost: list[int] = []
     processes = made(place, size, lost)
     try:
-        async with asyncio.timeout(LONG):
+        async with asyncio.timeout(PATIENCE):
             await processes.start()
         yield processes, lost
     finally:
@@ -79,7 +78,7 @@ async def classes(place: Path) -> AsyncIterator[tuple[Processes, list[bool]]]:
         slice_seconds=0.01,
     )
     try:
-        async with asyncio.timeout(LONG):
+        async with asyncio.timeout(PATIENCE):
             await processes.start()
         yield processes, moved
     finally:
@@ -93,7 +92,7 @@ def stopped(processes: Processes, job: Job) -> bool:
 
 
 async def until(holds: Callable[[], Any]) -> None:
-    async with asyncio.timeout(LONG):
+    async with asyncio.timeout(PATIENCE):
         while not holds():
             await asyncio.sleep(0.002)
 
@@ -101,8 +100,8 @@ async def until(holds: Callable[[], Any]) -> None:
 def ask(
     processes: Processes,
     request: bytes,
-    longest: float = LONG,
-    patience: float = LONG,
+    longest: float = PATIENCE,
+    patience: float = PATIENCE,
     client: str = "client",
 ) -> Job:
     return processes.submit([framed(request)], client, longest=longest, patience=patience)
@@ -494,7 +493,7 @@ class TestLoss:
                         os.kill(chance.choice([*processes.pids]), signal.SIGKILL)
                 if chance.random() < 0.3:
                     await asyncio.sleep(0.005)
-            async with asyncio.timeout(LONG):
+            async with asyncio.timeout(PATIENCE):
                 outcomes = await asyncio.gather(*(job.reply for _, job in jobs), return_exceptions=True)
             for i, ((word, _), outcome) in enumerate(zip(jobs, outcomes, strict=True)):
                 if isinstance(outcome, BaseException):
@@ -614,7 +613,7 @@ class TestClasses:
             for i in range(3):
                 with pytest.raises(SliceUsed):
                     await processes.submit(
-                        [framed(b"spin %d" % i)], "client", longest=LONG, patience=LONG, may_be_long=False
+                        [framed(b"spin %d" % i)], "client", longest=PATIENCE, patience=PATIENCE, may_be_long=False
                     ).reply
             assert await ask(processes, b"echo a").reply == b"a"
             assert (processes.long, len(moved)) == (0, 0)
@@ -735,7 +734,7 @@ class TestStop:
 
         def slow(handle: ForkServerProcess) -> None:
             asked.set()
-            stopped.wait(LONG)
+            stopped.wait(PATIENCE)
             start(handle)
             spawned.append(handle)
 
@@ -747,7 +746,7 @@ class TestStop:
         stopped.set()
         await until(lambda: spawned)
         for handle in spawned:
-            await asyncio.to_thread(handle.join, LONG)
+            await asyncio.to_thread(handle.join, PATIENCE)
             assert handle.exitcode is not None
         assert processes.pids == {}
 

@@ -14,13 +14,10 @@ import pytest
 from service.http.compression import CODINGS, KEPT, LEAST, Coding, coding_for, compressed
 from service.http.etag import JSON, Header, Representation
 from service.routes.pages import FOLDER
-from tests.service.conftest import client_of, toy_service
+from tests.service.conftest import PATIENCE, client_of, toy_service
 from tests.service.http.test_request_context import Wire
 
 pytestmark = pytest.mark.anyio
-
-PATIENCE = 120
-"""Seconds for what would otherwise never end, beside other programs that fill all cores."""
 
 DOCUMENT = json.dumps([0.1 * k for k in range(3000)]).encode()
 

@@ -21,7 +21,7 @@ from service.http import keys as module
 from service.http.keys import Allowance, Key, Keys, new_key
 from service.problems import Refusal
 from service.settings import Settings
-from tests.service.conftest import client_of, inline_toys
+from tests.service.conftest import PATIENCE, client_of, inline_toys
 from tests.service.toy_routes import GOOD
 
 pytestmark = pytest.mark.anyio
@@ -225,7 +225,7 @@ async def test_the_file_is_followed_while_the_service_runs(tmp_path: Path, monke
     monkeypatch.setattr(module, "LOOK_EVERY", 0.0)
     monkeypatch.setattr(keys, "refresh", noted)
     following = asyncio.create_task(keys.follow())
-    await asyncio.wait_for(read.wait(), 20)
+    await asyncio.wait_for(read.wait(), PATIENCE)
     following.cancel()
     assert threads[0] is not threading.main_thread()
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from service.http.limits import Bodies, ClientGone, negotiated, require_readable
 from service.problems import Refusal
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
+from tests.service.conftest import PATIENCE
 
 OFFERED = ("application/json", "text/plain")
 JAVA = b"text/html, image/gif, image/jpeg, *; q=.2, */*; q=.2"
@@ -161,7 +162,7 @@ class TestBodies:
             sender.send(b"x")
         watching = asyncio.create_task(bodies.watch())
         with pytest.raises(Refusal) as caught:
-            await asyncio.wait_for(bodies.read(sender.parts.get, {}), 20)
+            await asyncio.wait_for(bodies.read(sender.parts.get, {}), PATIENCE)
         watching.cancel()
         assert caught.value.problem.type.status == 408
         assert ("Connection", "close") in caught.value.problem.headers

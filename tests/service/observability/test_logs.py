@@ -18,6 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.observability.logs import LOG, JsonLines, configure
+from tests.service.conftest import PATIENCE
 
 ROOT = Path(__file__).parents[3]
 LINES = JsonLines()
@@ -146,7 +147,7 @@ except ZeroDivisionError:
     LOG.exception("failed")
 warnings.warn("of a package")
 """
-    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60)
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=PATIENCE)
     assert run.stdout == ""
     found = [read(line) for line in run.stderr.splitlines()]
     assert [(entry["level"], entry["logger"], entry["message"]) for entry in found] == [

@@ -25,6 +25,7 @@ from service.studies.results import Results
 from service.studies.store import Store
 from service.studies.study import Owner, Quotas, Study
 from service.studies.task import opened
+from tests.service.conftest import PATIENCE
 from tests.service.studies.toy_table import TABLE
 from tests.service.toy_routes import GOOD
 
@@ -112,7 +113,7 @@ class Desk:
         rest = {"together": False, "seconds": 1e-3, "bytes": 0}
         return self.store.create(Owner(""), body, plan | rest, Quotas(100, 100, 10**9))
 
-    def work(self, until: Callable[[], Any] = lambda: False, most: float = 60.0) -> None:
+    def work(self, until: Callable[[], Any] = lambda: False, most: float = PATIENCE) -> None:
         """Work until there is nothing to do, or something has come about."""
         end = time.monotonic() + most
         while not until() and self.engine.turn():

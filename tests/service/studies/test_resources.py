@@ -22,6 +22,7 @@ import pytest
 
 from service.app import Service
 from service.http.keys import Key, new_key
+from service.http.request_context import RequestContext
 from service.observability.metrics import Metrics
 from service.problems import Refusal
 from service.settings import Settings
@@ -32,7 +33,7 @@ from service.studies.folder import Ownership, data_folder
 from service.studies.store import Store, identity_of
 from service.studies.study import DISMISSED, Owner, Quotas
 from service.studies.supervisor import Supervisor
-from tests.service.conftest import INLINE, client_of
+from tests.service.conftest import INLINE, PATIENCE, client_of
 from tests.service.observability.test_metrics import read
 from tests.service.studies.conftest import UNIFORM, Desk
 from tests.service.studies.toy_table import TABLE
@@ -246,11 +247,26 @@ async def get(client: httpx.AsyncClient, place: str, media: str) -> httpx.Respon
     return await client.get(f"{place}/results", headers={"accept": media})
 
 
-async def test_events_tell_every_state_until_the_end(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+@pytest.fixture
+def watched(monkeypatch: pytest.MonkeyPatch) -> asyncio.Event:
+    """What is set when a stream of events has begun."""
+    begun, events = asyncio.Event(), RequestContext.events
+
+    async def noted(self: RequestContext, *arguments: Any) -> None:
+        begun.set()
+        await events(self, *arguments)
+
+    monkeypatch.setattr(RequestContext, "events", noted)
+    return begun
+
+
+async def test_events_tell_every_state_until_the_end(
+    desk_on: Desks, in_process: str, tmp_path: Path, watched: asyncio.Event
+) -> None:
     async with client_at(tmp_path) as client:
         place = await submitted(client)
         watching = asyncio.create_task(client.get(f"{place}/events"))
-        await asyncio.sleep(0.05)
+        await watched.wait()
         await asyncio.to_thread(desk_on(in_process, tmp_path).work)
         response = await watching
         assert response.headers["content-type"] == "text/event-stream"
@@ -377,7 +393,7 @@ async def test_a_key_is_charged_what_a_study_took(tmp_path: Path, predicted: flo
         return True
 
     watch = asyncio.create_task(supervisor.watch())
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(PATIENCE):
         while admitted() is not left:
             await asyncio.sleep(0.01)
     watch.cancel()
@@ -443,7 +459,7 @@ async def test_unfinished_studies_are_limited(tmp_path: Path) -> None:
 
 
 async def test_one_address_has_a_share_of_studies_and_of_event_streams(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, watched: asyncio.Event
 ) -> None:
     async with client_at(tmp_path, max_address_studies=1) as client:
         place = await submitted(client)
@@ -452,7 +468,7 @@ async def test_one_address_has_a_share_of_studies_and_of_event_streams(
         assert "max_address_studies" in refused.json()["detail"]
         monkeypatch.setattr(resources, "MOST_WATCHED_BY_ONE", 1)
         watching = asyncio.create_task(client.get(f"{place}/events"))
-        await asyncio.sleep(0.3)
+        await watched.wait()
         assert (await client.get(f"{place}/events")).json()["code"] == "too-busy"
         await client.delete(place)
         assert "event: dismissed" in (await watching).text
@@ -672,7 +688,7 @@ async def test_unfinished_studies_are_counted(desk_on: Desks, in_process: str, t
     async def counted(*expected: float) -> None:
         watch = asyncio.create_task(Supervisor(Settings(data=str(tmp_path)), TABLE, metrics).watch())
         try:
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(PATIENCE):
                 while (read(metrics.exposition())[STUDIES], read(metrics.exposition())[MISSING]) != expected:
                     await asyncio.sleep(0.01)
         finally:

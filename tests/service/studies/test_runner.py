@@ -18,7 +18,7 @@ from service.settings import Settings
 from service.studies.folder import Ownership
 from service.studies.study import SUCCESSFUL
 from service.studies.supervisor import Supervisor
-from tests.service.conftest import ROOT
+from tests.service.conftest import PATIENCE, ROOT
 from tests.service.studies.conftest import Desk, sleeping
 from tests.service.studies.toy_table import TABLE
 
@@ -37,7 +37,7 @@ time.sleep(300)
 STUDY = sleeping(0.01, 200)
 
 
-def until(condition: Callable[[], object], seconds: float = 120.0) -> None:
+def until(condition: Callable[[], object], seconds: float = PATIENCE) -> None:
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end
