@@ -65,6 +65,11 @@ class Definition:
         return type(self).held_rates is not Definition.held_rates
 
     @property
+    def holds(self) -> bool:
+        """Whether it holds measures or combinations of rates."""
+        return self.rolls or type(self).held is not Definition.held
+
+    @property
     def opens(self) -> bool:
         """Whether it is one-sided."""
         return type(self).gaps is not Definition.gaps

@@ -129,8 +129,8 @@ class Impacts:
     def _check_energy(
         self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], times: Numbers
     ) -> None:
-        if any(connection.driven for connection in description.connections):
-            # What drives may bring energy while impulses act.
+        if any(one.driven or (one.works() and one.holds) for one in description.connections):
+            # What drives may bring energy while impulses act, whatever its rate is at the start.
             return
         energies = [kinetic(description, Samples(times, side.placement, side.motion, {}, {}, {})) for side in sides]
         loss = np.array([sum(event.energy_loss for event in group) for group in self.groups])

@@ -19,7 +19,7 @@ from itertools import product
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from tests.oracles.plain_engine.coordinates import State
+from tests.oracles.plain_engine.coordinates import Floats, State
 from tests.oracles.plain_engine.mechanism import Mechanism, NotSupported, Undecided
 from tests.oracles.plain_engine.modes import STICK, Directions, Kind, Mode, directions, sticks_more, tangents, toward
 from tests.oracles.plain_engine.phase import Inconsistent, Key, Phase, Solution
@@ -147,11 +147,7 @@ class Combinations:
 
 def clusters(mechanism: Mechanism, state: State, touching: Sequence[int]) -> list[list[int]]:
     """Return the measures in groups that do not push one another."""
-    rows, mass = mechanism.rows(state, touching, mechanism.rough(touching)), mechanism.inertia(state)
-    held = rows.lines[[what == "held" for what, _ in rows.owners]]
-    n, m = len(mass), len(held)
-    whole = np.block([[mass, -held.T], [held, np.zeros((m, m))]])
-    response = np.linalg.pinv(whole, rcond=COUPLED)[:n, :n]
+    rows, response = mechanism.rows(state, touching, mechanism.rough(touching)), free_response(mechanism, state)
     lines = [rows.lines[[*rows.of("push", i), *rows.of("slip", i)]] for i in touching]
     coupled = [
         [np.abs(a @ response @ b.T).max() > COUPLED * max(np.linalg.norm(a @ response), 1e-300) for b in lines]
@@ -159,3 +155,12 @@ def clusters(mechanism: Mechanism, state: State, touching: Sequence[int]) -> lis
     ]
     count, labels = connected_components(np.array(coupled).reshape(len(lines), -1))
     return [[i for i, label in zip(touching, labels, strict=True) if label == k] for k in range(count)]
+
+
+def free_response(mechanism: Mechanism, state: State) -> Floats:
+    """Return the change of the rates by unit impulses, beside what holds, shape (n, n)."""
+    rows, mass = mechanism.rows(state), mechanism.inertia(state)
+    n, m = len(mass), len(rows.lines)
+    whole = np.block([[mass, -rows.lines.T], [rows.lines, np.zeros((m, m))]])
+    found: Floats = np.linalg.pinv(whole, rcond=COUPLED)[:n, :n]
+    return found

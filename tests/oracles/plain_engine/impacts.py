@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import permutations
+from itertools import chain, permutations
 
 import numpy as np
 
-from tests.oracles.plain_engine.combinations import NEARLY, Combinations, clusters
+from tests.oracles.plain_engine.combinations import NEARLY, Combinations, clusters, free_response
 from tests.oracles.plain_engine.coordinates import Floats, State
-from tests.oracles.plain_engine.mechanism import Mechanism, Undecided
+from tests.oracles.plain_engine.mechanism import Mechanism, NotSupported, Undecided
 from tests.oracles.plain_engine.modes import OPEN, ways
+from tests.oracles.plain_engine.slip_in_impact import impulses
 
 ALIKE = 1e-8
 """Share of the rates within which those after two orders are the same."""
@@ -54,6 +55,10 @@ class Impacts:
 
     def at_once(self, group: Sequence[int], rates: Floats) -> Impact:
         """Return the outcome if all contacts of a group act together."""
+        alone = self._by_its_law(group, rates)
+        return self._together(group, rates) if alone is None else alone
+
+    def _together(self, group: Sequence[int], rates: Floats) -> Impact:
         mechanism, state = self.mechanism, replace(self.state, rates=rates)
         struck = _Struck(mechanism, state, group, self.restitution)
         nothing = [OPEN] * len(mechanism.one_sided)
@@ -61,19 +66,62 @@ class Impacts:
         pushes = {i: float(found.forces[found.of("push", i)].sum()) for i in group}
         return Impact(rates + found.accelerations, pushes)
 
-    def in_turn(self, order: Sequence[int], rates: Floats) -> Impact | None:
-        """Return the outcome if contacts act one after another, the first of them that closes; None if it has none."""
-        pushes = dict.fromkeys(order, 0.0)
+    def _by_its_law(self, group: Sequence[int], rates: Floats) -> Impact | None:
+        """Return the outcome of the only contact that closes, by the law of Poisson or Stronge; None by Newton's.
+
+        Where there is no slip the three are one for a contact alone, and in space friction goes with Newton's.
+        """
+        every = [self.mechanism.one_sided[i] for i in group]
+        smooth = not any(one.slips for one in every)
+        inelastic = all(self.restitution[i] == 0.0 for i in group)
+        if all(one.touch.law == "newton" or one.slips == 3 for one in every) or (
+            smooth and (inelastic or len(group) == 1)
+        ):
+            return None
+        closing = [i for i in group if self.gaps[i] @ rates < -CLOSES * self.size]
+        if len(closing) == 1:
+            after = self._alone(closing[0], rates)
+            if all(self.gaps[i] @ after.rates >= -CLOSES * self.size for i in group):
+                return after
+        raise NotSupported("several impacts at once by the laws of Poisson or Stronge")
+
+    def _alone(self, i: int, rates: Floats) -> Impact:
+        one, state = self.mechanism.one_sided[i], replace(self.state, rates=rates)
+        if one.touch.law == "newton" or not one.slips:
+            return self._together([i], rates)
+        rows = self.mechanism.rows(state, [i], [i])
+        lines = rows.lines[[*rows.of("push", i), *rows.of("slip", i)]]
+        changes = free_response(self.mechanism, state) @ lines.T
+        touch = replace(one.touch, restitution=self.restitution[i])
+        found = impulses(lines @ changes, rows.rates[[*rows.of("push", i), *rows.of("slip", i)]], touch)
+        if found is None:
+            raise Undecided("no-impact", [one.name])
+        return Impact(rates + changes @ found, {i: float(found[0])})
+
+    def in_turn(self, order: Sequence[Sequence[int]], rates: Floats) -> Impact | None:
+        """Return the outcome if contacts act one set after another, the first that closes; None if it has none."""
+        pushes = dict.fromkeys(chain.from_iterable(order), 0.0)
         for _ in range(IN_TURN):
-            hit = next((i for i in order if self.gaps[i] @ rates < -CLOSES * self.size), None)
+            hit = next((one for one in order if any(self.gaps[i] @ rates < -CLOSES * self.size for i in one)), None)
             if hit is None:
                 return Impact(rates, pushes)
             try:
-                one = self.at_once([hit], rates)
+                one = self.at_once(hit, rates)
             except Undecided:
                 return None
-            rates, pushes[hit] = one.rates, pushes[hit] + one.pushes[hit]
+            rates = one.rates
+            for i in hit:
+                pushes[i] += one.pushes.get(i, 0.0)
         return None
+
+    def _in_given_order(self, group: Sequence[int]) -> list[list[int]] | None:
+        """Return the sets of contacts in the order in which they act, if that is given."""
+        orders = {i: self.mechanism.one_sided[i].order for i in group}
+        numbers = sorted({order for order in orders.values() if order is not None})
+        left = [[i] for i in group if orders[i] is None]
+        if len(group) < 2 or (left and self.mechanism.simultaneous != "in order"):
+            return None
+        return [[i for i in group if orders[i] == number] for number in numbers] + left
 
     def of_group(self, group: Sequence[int], rates: Floats) -> Impact:
         """Return the outcome of one group: in the order that is given, or if no order makes a difference.
@@ -83,10 +131,10 @@ class Impacts:
         Undecided
         """
         every = self.mechanism.one_sided
-        orders = {i: every[i].order for i in group}
         undecided = Undecided("simultaneous-impacts", [every[i].name for i in group])
-        if len(group) > 1 and None not in orders.values():
-            ordered = self.in_turn(sorted(group, key=lambda i: (orders[i] or 0.0, i)), rates)
+        given = self._in_given_order(group)
+        if given is not None:
+            ordered = self.in_turn(given, rates)
             if ordered is None:
                 raise undecided
             return ordered
@@ -95,10 +143,12 @@ class Impacts:
         taking = [i for i in group if found.pushes[i] > NEARLY * max(found.pushes.values())]
         # A string that is taut already takes its part at once.
         apart = [i for i in taking if abs(moves[i]) > NEARLY or every[i].closes != "taut"]
+        if self.mechanism.simultaneous == "together":
+            return found
         if len(apart) <= 1 and sum(rate < -NEARLY for rate in moves.values()) <= 1:
             return found
         for order in permutations(group):
-            other = self.in_turn(order, rates) if len(group) <= ORDERED else found
+            other = self.in_turn([[i] for i in order], rates) if len(group) <= ORDERED else found
             if len(group) > ORDERED or (
                 other is not None and np.abs(other.rates - found.rates).max() > ALIKE * self.size
             ):

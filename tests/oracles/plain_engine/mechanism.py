@@ -124,6 +124,7 @@ class Mechanism:
         self.coordinates = Coordinates(reader)
         self.definitions = list(definitions)
         self.gravity = np.array(reader.gravity)
+        self.simultaneous = reader.scene.simultaneous
         self.spent = 0
         placement = self.coordinates.placement(self.coordinates.start())
         still = self.coordinates.motion(np.zeros(self.coordinates.size))
@@ -138,6 +139,8 @@ class Mechanism:
             for run in one.runs
             for part in run.parts
         ]
+        # Where nothing moves, formulas of time do: their arguments change by less than a unit for one of time.
+        self.driven = max([1.0, *(one.driven for one in self.definitions)])
         self.shortest_rod = min([1.0, *(one.length for one in self.definitions if isinstance(one, RodDefinition))])
 
     def spend(self, evaluations: int = 1) -> None:
@@ -150,7 +153,7 @@ class Mechanism:
         """Return the rows of everything that holds, of gaps that are closed, and of slips that are wanted."""
         coordinates, u, n = self.coordinates, state.rates, self.coordinates.size
         fastest = float(np.abs(u).max(initial=0.0))
-        h = REACH * self._shortest(state) / fastest if fastest > 0.0 else 1.0
+        h = REACH * self._shortest(state) / max(fastest, self.driven)
         motions = np.concatenate([np.eye(n + 1, n), np.broadcast_to(u, (9, n))])
         times = np.concatenate([np.zeros(n + 2), h * _STENCIL])
         there = coordinates.advanced(state, times[:, None] * motions, times)
@@ -226,10 +229,10 @@ class Mechanism:
         found: Floats = -self._gradient(state, chain.potential) - chain.mass * line * (line @ accelerations)
         return found
 
-    def gap_rates(self, state: State) -> tuple[Floats, Floats]:
-        """Return all gaps and their rates, shape (k,) each."""
+    def gap_rates(self, state: State, numbers: slice = slice(None)) -> tuple[Floats, Floats]:
+        """Return gaps and their rates, all or some, shape (k,) each."""
         moving = self.coordinates.moving(state, state.rates)
-        gaps = np.array([one.definition.gaps(moving)[one.key] for one in self.one_sided], dtype=complex)
+        gaps = np.array([one.definition.gaps(moving)[one.key] for one in self.one_sided[numbers]], dtype=complex)
         return gaps.real, gaps.imag / STEP
 
     def spans(self, state: State) -> list[tuple[str, float, float]]:

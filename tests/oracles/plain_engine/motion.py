@@ -106,6 +106,7 @@ class _Run:
         self.phase: Phase | None = None
         self.fastest = 0.0
         self.bounces: dict[int, int] = {}
+        self.stays = 0
 
     def go(self) -> Motion:
         """Follow the motion to its end."""
@@ -183,11 +184,13 @@ class _Run:
             self.motion.states[self.now] = self.state
             self.motion.forces[self.now] = forces_of(phase, self.state)
 
-    def _figures(self, phase: Phase, state: State, kind: str | None = None) -> dict[Key, float]:
-        """Return what has to stay at or above zero, all or that of one kind alone."""
+    def _figures(self, phase: Phase, state: State, kind: str | None = None, number: int = -1) -> dict[Key, float]:
+        """Return what has to stay at or above zero, all or that of one kind alone, of gaps one alone."""
         mechanism, found = self.mechanism, dict[Key, float]()
+        if kind == "gap":
+            return {("gap", number): float(mechanism.gap_rates(state, slice(number, number + 1))[0][0])}
         opened = [i for i in range(len(mechanism.one_sided)) if i not in phase.closed]
-        if kind in (None, "gap") and opened:
+        if kind is None and opened:
             gaps, _ = mechanism.gap_rates(state)
             found |= {("gap", i): float(gaps[i]) for i in opened}
         if kind in (None, "rank"):
@@ -196,7 +199,7 @@ class _Run:
             slack = {mechanism.one_sided[i].name for i in opened}
             spans = enumerate(mechanism.spans(state))
             found |= {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
-        if kind not in ("gap", "rank", "span"):
+        if kind not in ("rank", "span"):
             # Where connections lose their rank there may be no forces.
             with suppress(Inconsistent):
                 found |= of_chains(phase, state) | self._forced(phase, state)
@@ -218,6 +221,9 @@ class _Run:
                 self.now, self.state = found
                 self._sample(phase)
                 continue
+            self.stays = self.stays + 1 if found.time == self.now else 0
+            if self.stays > AT_ONCE:
+                raise NotSupported("states that change at one instant without an end, as those of corners that meet")
             self.now, self.state = found.time, found.state
             kind, i = found.key
             if kind == "rank":

@@ -44,7 +44,7 @@ TOUCHES = {"gap": GRAZES, "rank": 1e-12}
 """The same of what ends a motion there; a product of squares is zero to the square of what places are known to."""
 
 Figures = Callable[..., dict[Key, float]]
-"""What has to stay at or above zero in a state, by kind and number: all, or that of one kind."""
+"""What has to stay at or above zero in a state, by kind and number: all, or that of one kind, or a number of it."""
 
 
 @dataclass(frozen=True)
@@ -167,9 +167,7 @@ class Stepper:
     ) -> Crossing | None:
         losses = []
         for key in curves[0]:
-            loss = _first_loss(
-                lambda t, key=key: figures(seen(t), key[0])[key], times, [x[key] for x in curves], key[0]
-            )  # type: ignore[misc]
+            loss = _first_loss(lambda t, key=key: figures(seen(t), *key)[key], times, [x[key] for x in curves], key[0])  # type: ignore[misc]
             losses += [] if loss is None else [(*loss, key)]
         if not losses:
             return None
@@ -180,10 +178,10 @@ class Stepper:
         earlier = max(time - 1e-4 * solver.step_size, begun + 0.5 * (time - begun))
         if time > earlier:
             # The zero of states that are reached in steps, and not by interpolation.
-            then, before = (figures(seen(t), key[0])[key] for t in (time, earlier))
+            then, before = (figures(seen(t), *key)[key] for t in (time, earlier))
             slope = (then - before) / (time - earlier)
             for _ in range(2 if slope < 0.0 else 0):
-                change = figures(self.to(origin, begun, time), key[0])[key] / slope
+                change = figures(self.to(origin, begun, time), *key)[key] / slope
                 time -= change if abs(change) <= 0.05 * solver.step_size else 0.0
         return Crossing(key, max(time, begun), self.to(origin, begun, max(time, begun)))
 

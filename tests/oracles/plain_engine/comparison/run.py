@@ -24,6 +24,8 @@ RESULTS = Path(__file__).parents[4] / "benchmarks" / "results"
 CATALOGUE = Path(__file__).parents[4] / "examples" / "scenes"
 SEEDS = 8
 """Seeds that are listed of each class."""
+KEPT = ("gravity", "let", "bodies", "connections", "numbers", "impacts", "simultaneous")
+"""What a motion depends on."""
 LATEST = 1.5
 """Last time at which scenes of the catalogue are compared (s)."""
 
@@ -84,9 +86,7 @@ def catalogue() -> dict[str, str]:
         if isinstance(times, dict):
             times = np.linspace(times["start"], times["stop"], times["count"]).tolist()
         wanted = sorted({0.0, *(float(t) for t in times if 0.0 <= float(t) <= LATEST)})[:6]
-        scene = {
-            key: described[key] for key in ("gravity", "let", "bodies", "connections", "numbers") if key in described
-        }
+        scene = {key: described[key] for key in KEPT if key in described}
         name = classes_of(compared(scene, wanted if len(wanted) > 1 else [0.0, 0.1]))
         if name:
             found[path.stem] = name

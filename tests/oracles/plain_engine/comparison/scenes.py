@@ -9,7 +9,13 @@ import numpy as np
 
 from core.multibody.language.reading import scene_from
 from tests.core.multibody.random_laws import SHARE, Laws
-from tests.oracles.plain_engine.comparison import units_in_plane, units_in_space, units_of_other_kinds
+from tests.oracles.plain_engine.comparison import (
+    units_in_plane,
+    units_in_space,
+    units_of_formulas,
+    units_of_other_kinds,
+    units_of_shapes,
+)
 from tests.oracles.plain_engine.comparison.drawing import Draw, Json, Unit
 from tests.oracles.plain_engine.mechanism import NotSupported
 from tests.oracles.plain_engine.motion import follow
@@ -18,10 +24,13 @@ ENDS = (0.3, 0.5, 0.8)
 """Last times asked for (s)."""
 APART = 5.0
 """How far units stand from one another (m)."""
-HOLDS = ("pin", "rod", "track", "weld", "slider", "ball-joint", "rolling")
+HOLDS = ("pin", "rod", "track", "weld", "slider", "ball-joint", "rolling", "relation")
 """Kinds of which a second one between the same places changes nothing."""
-PLANE = (*units_in_plane.UNITS, *units_of_other_kinds.PLANE)
-SPACE = (*units_in_space.UNITS, *units_of_other_kinds.SPACE)
+OTHERS = (units_of_other_kinds, units_of_formulas, units_of_shapes)
+PLANE = (*units_in_plane.UNITS, *(unit for module in OTHERS for unit in module.PLANE))
+SPACE = (*units_in_space.UNITS, *(unit for module in OTHERS for unit in module.SPACE))
+LAWS = ("poisson", "stronge")
+"""Laws of impact beside Newton's."""
 
 
 def scene_of(seed: int) -> tuple[Json, list[float]]:
@@ -46,6 +55,10 @@ def scene_of(seed: int) -> tuple[Json, list[float]]:
     if draw.chance(0.06) and not any(one["kind"] == "chain" for one in scene["connections"]):
         frame = {"kind": "spinning-frame", "rate": draw.one((1, 2))}
         scene["connections"].append(frame if space else {**frame, "about": "normal"})
+    if draw.chance(0.12):
+        scene["impacts"] = draw.one(LAWS)
+    if draw.chance(0.12):
+        scene["simultaneous"] = draw.one(("together", "in order"))
     later = np.random.default_rng([2026, seed, 1])
     places = [end for unit in units for end in unit.ends]
     if places and later.random() < SHARE:
