@@ -64,26 +64,52 @@ def decided(
         For more contacts with friction that push one another than
         `core.multibody.contacts.contact_responses.MOST_UNDECIDED`.
     """
-    unilateral = along_slip(measures, touching, q, v)
-    states = [State.OPEN] * len(unilateral)
+    aligned = along_slip(measures, touching, q, v)
+    unilateral, states = list(aligned), [State.OPEN] * len(aligned)
     choices = {i: _choices(unilateral[i], q, v) for i in touching if is_zero(gap_rate(unilateral[i], q, v))}
     if not choices:
         return Decided(states, unilateral)
     found = responses(phase_table(base, (), (), q, v).table, unilateral, list(choices))
-    at = Situation(base, unilateral, q, v, choices, found)
-    for group in found.clusters():
-        if len(group) > MOST_UNDECIDED and is_smooth(unilateral, group):
-            chosen: Balance | Problem = decided_without_friction(at, group, states)
-        else:
-            require_few(unilateral, group, "undecided contacts at once")
-            chosen = _decided_group(at, group, states)
-        if isinstance(chosen, Problem):
-            return chosen
-        for i, state in zip(group, chosen.states, strict=True):
-            states[i] = state
-        for i, direction in chosen.directions.items():
-            unilateral[i] = turned(unilateral[i], one_of(direction))
+    groups = found.clusters()
+    # Accelerations do not tie groups to one another, but conditions on what follows them do: those of a group hold
+    # beside what the others do. What is not decided yet is taken to stay closed.
+    for i, possible in choices.items():
+        states[i] = possible[0]
+    assumed: dict[int, list[State]] = {}
+    problems: dict[int, Problem] = {}
+    for _ in range(len(groups) + 1):
+        stale = [k for k, group in enumerate(groups) if assumed.get(k) != _beside(states, group)]
+        if not stale:
+            break
+        for k in stale:
+            group, assumed[k] = groups[k], _beside(states, groups[k])
+            for i in group:
+                unilateral[i] = aligned[i]
+            chosen = _decided_alone(Situation(base, unilateral, q, v, choices, found), group, states)
+            problems.pop(k, None)
+            if isinstance(chosen, Problem):
+                problems[k] = chosen
+                continue
+            for i, state in zip(group, chosen.states, strict=True):
+                states[i] = state
+            for i, direction in chosen.directions.items():
+                unilateral[i] = turned(unilateral[i], one_of(direction))
+    if problems:
+        return problems[min(problems)]
     return Decided(states, unilateral)
+
+
+def _beside(states: Sequence[State], group: Sequence[int]) -> list[State]:
+    """Return the states of what is not in a group."""
+    return [state for i, state in enumerate(states) if i not in group]
+
+
+def _decided_alone(at: Situation, group: Sequence[int], states: Sequence[State]) -> Balance | Problem:
+    """Return the states of one group, beside those of the others."""
+    if len(group) > MOST_UNDECIDED and is_smooth(at.unilateral, group):
+        return decided_without_friction(at, group, states)
+    require_few(at.unilateral, group, "undecided contacts at once")
+    return _decided_group(at, group, states)
 
 
 def stays(base: Table, unilateral: Sequence[Unilateral], touching: Sequence[int]) -> bool:
@@ -122,7 +148,7 @@ def _choices(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> tuple[Sta
 
 
 def _decided_group(at: Situation, group: Sequence[int], settled: Sequence[State]) -> Balance | Problem:
-    """Return the states of contacts that push one another; those of groups before it are settled."""
+    """Return the states of contacts that push one another; those of the others are given."""
     names = tuple(at.unilateral[i].name for i in group)
     consistent: list[Balance] = []
     several = False

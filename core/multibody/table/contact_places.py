@@ -45,8 +45,8 @@ class Side:
 
     @property
     def round(self) -> bool:
-        """Whether it has a rim, so that sticking is rolling."""
-        return bool(self.semi_axes) or not is_zero(self.radius)
+        """Whether it is a body with a rim, so that sticking is rolling; the ground, hollow or not, does not turn."""
+        return self.body is not None and (bool(self.semi_axes) or bool(self.radius > 0))
 
     @property
     def single(self) -> bool:
