@@ -52,7 +52,7 @@ def follow_backwards(motion: PhaseMotion, times: Floats) -> None:
     event = None
     if not names:
         watched = [
-            *watches(phase.unilateral, phase.states, phase.tables[0]),
+            *watches(phase.unilateral, phase.states, phase.tables[0], phase.openings),
             *switches(phase.arguments, phase.tables[0].table),
             *lengths(motion.base.measures.limits),
         ]

@@ -53,6 +53,8 @@ class Phase:
         The measure that comes to rest at the end, after impacts that are not listed; empty where there are none.
     arguments : sequence of Argument
         What is zero where formulas change their piece.
+    openings : mapping of int to int
+        Powers of time with which measures open that touch at the start.
     """
 
     tracks: list[Track]
@@ -66,6 +68,7 @@ class Phase:
     tail: Accumulation | None = None
     settles: str = ""
     arguments: Sequence[Argument] = ()
+    openings: Mapping[int, int] = field(default_factory=dict)
 
     @property
     def start(self) -> Ball:
@@ -192,21 +195,31 @@ class PhaseMotion:
         return not self.unilateral and not switching(self.base.measures.table.laws)
 
 
-def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:
+def phase_of(
+    base: Described,
+    found: Decided,
+    turning: Sequence[str],
+    tracks: Tracks,
+    start: ContactStart,
+    opening: Mapping[int, int],
+) -> Phase:
     """Return the phase that begins at the present state.
 
     Parameters
     ----------
     turning : sequence of str
         Contacts whose friction turns with their slip.
+    opening : mapping of int to int
+        See `Phase.openings`.
 
-
-    Where that is known from two tracks, each is put onto the rows of the phase: it came there by a series.
+    Where the state is known from two tracks, each is put onto the rows of the phase: it came there by a series.
     """
     each, models, tables = [], [], []
     # What begins to slide in space has no slip yet: what rounding leaves of one would be a direction.
     rests = [one.across is not None and is_zero(slip_rate(one, *tracks.wide())) for one in found.unilateral]
     onsets = [State.STICK if begun and state.sense else state for begun, state in zip(rests, found.states, strict=True)]
+    # What lets go still touches, at rest.
+    onsets = [State.CLOSED if opening.get(i, 0) > 1 else state for i, state in enumerate(onsets)]
     for track in tracks.each:
         phase = phase_table(base.measures.table, found.unilateral, found.states, track.q, track.v)
         phase.table.rows = [row if row.name in turning else replace(row, slide=None) for row in phase.table.rows]
@@ -228,7 +241,7 @@ def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tr
         each.append(Track(track.time, phase.table.q, phase.table.v))
         tables.append(phase)
     unknown = tracks.lost if any(map(any, tracks.lost)) else None
-    return Phase(each, models, tables, found.states, found.unilateral, unknown)
+    return Phase(each, models, tables, found.states, found.unilateral, unknown, openings=opening)
 
 
 def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:

@@ -90,7 +90,7 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
     """
     in_closed_form = phase.uniform and len(phase.tracks) == 1
     watched = [
-        *watches(phase.unilateral, phase.states, phase.tables[0], of_forces=not in_closed_form),
+        *watches(phase.unilateral, phase.states, phase.tables[0], phase.openings, of_forces=not in_closed_form),
         *switches(phase.arguments, phase.tables[0].table),
         *lengths(base.measures.limits),
     ]

@@ -30,6 +30,8 @@ from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.phases.formula_ends import formula_that_ends
+from core.multibody.phases.openings import openings
+from core.multibody.phases.passing_touch import without_passing_touch
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
@@ -111,13 +113,15 @@ class _Run:
     def _follow(self) -> None:
         still, last = 0, -1.0
         while True:
+            known = len(self.motion.events)
             if not self._collide():
                 return
-            problem = self._decide()
+            problem = self._decide(known)
             if problem is not None:
                 self._stop(problem)
                 return
-            phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start)
+            opening = openings(self.base.measures.table, self.decided, self.touching, *self.tracks.wide())
+            phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start, opening)
             phase.arguments = tuple(self.arguments.values())
             self.motion.phases.append(phase)
             if self._accumulate(phase):
@@ -317,13 +321,14 @@ class _Run:
             self._event("switch", name)
         self.arguments = dict(arguments)
 
-    def _decide(self) -> Problem | None:
-        """Find the states of what touches, and what changes by them."""
+    def _decide(self, known: int) -> Problem | None:
+        """Find the states of what touches, and what changes by them; so many events were known before this one."""
         q, v = self.tracks.wide()
         found = self._choose(q, v)
         if isinstance(found, Problem):
             return found
         table = self.base.measures.table
+        found = without_passing_touch(table, found, q, v)
         require_pressed_in_plane(self.base, found)
         now = phase_table(table, found.unilateral, found.states, q, v)
         self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
@@ -337,6 +342,10 @@ class _Run:
                 )
         for one, old, new in zip(self.unilateral, self.states, found.states, strict=True):
             kind = change_of(one, old, new)
+            if self.motion.phases and old is State.OPEN and new is not State.OPEN:
+                # What closes without an approach that is known has had no impact.
+                met = {event.name for event in self.motion.events[known:]} | {self.motion.phases[-1].settles}
+                kind = "" if one.name in met else one.closes
             if kind and self.motion.phases:
                 self._event(kind, one.name)
             if old is not new:

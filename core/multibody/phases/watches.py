@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
@@ -39,6 +39,8 @@ class Watch:
         What has to be positive, for "push" and "grip".
     argument : Law or None
         Of a switch.
+    power : int
+        Of time with which a gap opens at the start of the phase; zero where it is open.
     """
 
     number: int
@@ -47,6 +49,7 @@ class Watch:
     sense: int = 1
     admissible: AdmissibleForce | None = None
     argument: Law | None = None
+    power: int = 0
 
     def series(self, motion: Expansion) -> Series | None:
         """Return it along a motion with constant accelerations; None of a formula that is no polynomial."""
@@ -63,7 +66,8 @@ class Watch:
     @property
     def watched(self) -> Watched:
         """What a search has to know of it."""
-        return Watched(self.along, self.admissible is not None, self.what in ("gap", "length"), self.what == "length")
+        jumps, length = self.what in ("gap", "length"), self.what == "length"
+        return Watched(self.along, self.admissible is not None, jumps, length, self.power)
 
     def along(self, pieces: Pieces) -> Curve:
         """Return it along a motion in pieces."""
@@ -86,11 +90,23 @@ class Watch:
 
 
 def watches(
-    unilateral: Sequence[Unilateral], states: Sequence[State], phase: PhaseTable, *, of_forces: bool = True
+    unilateral: Sequence[Unilateral],
+    states: Sequence[State],
+    phase: PhaseTable,
+    openings: Mapping[int, int],
+    *,
+    of_forces: bool = True,
 ) -> list[Watch]:
-    """Return what ends a phase; of forces that are constant nothing is watched."""
+    """Return what ends a phase; of forces that are constant nothing is watched.
+
+    Parameters
+    ----------
+    openings : mapping of int to int
+        Powers of time with which gaps open that are zero at the start.
+    """
     closed = [i for i in range(len(unilateral)) if phase.normal[i] is not None]
-    found = [Watch(i, "gap", one) for i, one in enumerate(unilateral) if i not in closed]
+    gaps = [i for i in range(len(unilateral)) if i not in closed]
+    found = [Watch(i, "gap", unilateral[i], power=openings.get(i, 0)) for i in gaps]
     for force in admissible(unilateral, closed, states, phase) if of_forces else ():
         what: Literal["push", "grip"] = "grip" if force.grips else "push"
         found.append(Watch(force.number, what, unilateral[force.number], admissible=force))

@@ -173,14 +173,7 @@ def _double(table: Table, rows: Sequence[Row], bounds: Sequence[Poly]) -> list[P
     found: list[Poly] = []
     basis = Elimination()
     for _, measure in _dependent(table, rows):
-        bend = Row.held("", measure).rates
-        slopes = [_applied(bend, direction) for direction in directions]
-        form: Poly = {}
-        for a, slope in enumerate(slopes):
-            for b, direction in enumerate(directions[: a + 1]):
-                x = sum((y * direction[j] for j, y in slope.items() if j in direction), ZERO)
-                if not is_zero(x):
-                    form[b, a] = x / 2 if a == b else x
+        slopes, form = _bent(measure, directions)
         if squared(form) is None:
             return None
         for slope in slopes if form else ():
@@ -190,6 +183,35 @@ def _double(table: Table, rows: Sequence[Row], bounds: Sequence[Poly]) -> list[P
             if basis.add({a: x for a, x in across.items() if not is_zero(x)}, ZERO) is None:
                 found.append(_through(table, slope))
     return found
+
+
+def _bent(measure: Poly, directions: Sequence[Line]) -> tuple[list[Line], Poly]:
+    """Return the second derivative of a measure times each direction, and its quadratic form in shares of them."""
+    bend = Row.held("", measure).rates
+    slopes = [_applied(bend, direction) for direction in directions]
+    form: Poly = {}
+    for a, slope in enumerate(slopes):
+        for b, direction in enumerate(directions[: a + 1]):
+            x = sum((y * direction[j] for j, y in slope.items() if j in direction), ZERO)
+            if not is_zero(x):
+                form[b, a] = x / 2 if a == b else x
+    return slopes, form
+
+
+def is_least(table: Table, gap: Poly) -> bool:
+    """Return whether a gap that is zero is larger at all places beside it to which the measures of a table lead.
+
+    To second order: its line depends on those of the measures, and what they leave of its second derivative is a sum
+    of squares. A pendulum at its lowest place has such a gap above a floor that it touches.
+    """
+    rows = [row for row in table.rows if row.measure is not None and not row.drag]
+    rows.append(Row.held("", gap))
+    own = next((measure for k, measure in _dependent(table, rows) if k == len(rows) - 1), None)
+    if own is None:
+        return False
+    bounds = [rows[k].measure or {} for k in independent(row.line(table.q) for row in rows)]
+    _, form = _bent(own, tangent_directions(table, bounds))
+    return bool(squared(form)) and all(x > 0 for (a, b), x in form.items() if a == b)
 
 
 def _applied(bend: LinearForm, direction: Line) -> Line:

@@ -37,9 +37,10 @@ class EveryZero:
         coarse: Sequence[Expanded] = (),
         way: float = 1.0,
     ) -> None:
-        self._motion = Followed(motions, quantities, [True] * len(quantities), way, coarse, every=True)
-        self._signs = [0] * len(quantities)
-        self._last: list[Found | None] = [None] * len(quantities)
+        count = len(quantities)
+        self._motion = Followed(motions, quantities, [True] * count, [0] * count, way, coarse, every=True)
+        self._signs = [0] * count
+        self._last: list[Found | None] = [None] * count
         self.starts: list[float] = []
         self._until = 0.0
 

@@ -35,12 +35,15 @@ class Watched:
         Whether it matters that it only touches zero.
     singular : bool
         Whether its zero is a singular place of the table as described.
+    power : int
+        Of time with which it begins, where it is zero at the start.
     """
 
     along: Quantity
     of_forces: bool = False
     jumps: bool = False
     singular: bool = False
+    power: int = 0
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,14 @@ class FirstOfMotion:
     def __init__(self, expansions: Expansions, watched: Sequence[Watched], way: float = 1.0) -> None:
         self._numbers = [[i for i, one in enumerate(watched) if one.of_forces == forces] for forces in (False, True)]
         self._searches = [
-            FirstZero(motions, [watched[i].along for i in numbers], [watched[i].jumps for i in numbers], way, coarse)
+            FirstZero(
+                motions,
+                [watched[i].along for i in numbers],
+                [watched[i].jumps for i in numbers],
+                [watched[i].power for i in numbers],
+                way,
+                coarse,
+            )
             for motions, coarse, numbers in zip(
                 (expansions.places, expansions.forces), expansions.coarse, self._numbers, strict=True
             )

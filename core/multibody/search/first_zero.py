@@ -29,6 +29,8 @@ class FirstZero:
     jumps : sequence of bool
         Of which quantities it matters whether they only touch zero: what follows is another motion then, and not the
         same to within its error.
+    powers : sequence of int
+        Of time with which each begins: see `Followed`.
     way : float
         -1 for the time before zero.
     coarse : sequence of Expanded
@@ -40,10 +42,11 @@ class FirstZero:
         motions: Sequence[Expanded],
         quantities: Sequence[Quantity],
         jumps: Sequence[bool],
+        powers: Sequence[int],
         way: float = 1.0,
         coarse: Sequence[Expanded] = (),
     ) -> None:
-        self._motion = Followed(motions, quantities, jumps, way, coarse)
+        self._motion = Followed(motions, quantities, jumps, powers, way, coarse)
 
     @property
     def below(self) -> list[int]:

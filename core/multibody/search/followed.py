@@ -73,6 +73,8 @@ class WatchedSign:
 
     Attributes
     ----------
+    power : int
+        Of time with which it rises from zero at the start: lower ones are zero.
     above : bool
         Whether it has been above zero.
     since : float or None
@@ -83,6 +85,7 @@ class WatchedSign:
 
     quantity: Quantity
     jumps: bool
+    power: int
     index: int
     above: bool = True
     since: float | None = None
@@ -100,6 +103,8 @@ class Followed:
     jumps : sequence of bool
         Of which quantities it matters whether they only touch zero: what follows is another motion then, and not the
         same to within its error.
+    powers : sequence of int
+        Of time with which each begins: as many of its coefficients are zero at the start, whatever is computed of them.
     way : float
         -1 for the time before zero.
     coarse : sequence of Expanded
@@ -118,13 +123,14 @@ class Followed:
         motions: Sequence[Expanded],
         quantities: Sequence[Quantity],
         jumps: Sequence[bool],
+        powers: Sequence[int],
         way: float = 1.0,
         coarse: Sequence[Expanded] = (),
         *,
         every: bool = False,
     ) -> None:
         self.motions, self.way, self.coarse, self.every = motions, way, coarse, every
-        self.watched = [WatchedSign(*both, i) for i, both in enumerate(zip(quantities, jumps, strict=True))]
+        self.watched = [WatchedSign(*each, i) for i, each in enumerate(zip(quantities, jumps, powers, strict=True))]
         self._left: list[Interval] = []
         self._reached = 0.0
         self._last = 0.0
@@ -244,14 +250,15 @@ class Followed:
         power of the first coefficient that is left out follows; it is zero for what vanishes throughout.
         """
         assert len(values) == 1
-        known = np.abs(values[0, :, 0]) > rounded[0]
+        begun = np.arange(values.shape[1]) >= watch.power
+        known = begun & (np.abs(values[0, :, 0]) > rounded[0])
         if not known.any():
             return values, band, 0
         zeros, count = int(np.argmax(known)), values.shape[1]
         shifted, errors = np.zeros_like(values), np.zeros_like(band)
         shifted[:, : count - zeros], errors[:, : count - zeros] = values[:, zeros:], band[:, zeros:]
         # Of what is left the first that is known decides the sign just after the start.
-        sure = np.abs(values[0, :, 0]) > band[0]
+        sure = begun & (np.abs(values[0, :, 0]) > band[0])
         watch.above = bool(values[0, int(np.argmax(sure)) if sure.any() else zeros, 0] > 0.0)
         if not watch.above and watch.index not in self.below:
             self.below.append(watch.index)

@@ -60,7 +60,7 @@ def level(a: float | str, b: float = 1.0, c: float = 0.0) -> Callable[[Pieces], 
 
 
 def first(*quantities: Callable[[Pieces], Curve], end: float = 10.0, jumps: bool = True) -> Found | None:
-    return FirstZero([Circle()], list(quantities), [jumps] * len(quantities)).until(end)
+    return FirstZero([Circle()], list(quantities), [jumps] * len(quantities), [0] * len(quantities)).until(end)
 
 
 def exact(found: Found | None) -> mpf:
@@ -130,14 +130,14 @@ def test_the_first_of_several_counts_and_time_may_run_backwards() -> None:
     found = first(level("0.5"), level("0.5000000001"), level("0.4999999999"))
     assert found is not None
     assert found.index == 2
-    back = FirstZero([Circle()], [level("0.5", 1.0, 0.1)], [True], -1.0).until(10.0)
+    back = FirstZero([Circle()], [level("0.5", 1.0, 0.1)], [True], [0], -1.0).until(10.0)
     # 0.5 + x + 0.1 y = 0 backwards.
     size = mp.sqrt(mpf("1.01"))
     assert abs(exact(back) - (mp.atan2(mpf(1), 10) - acos(mpf("-0.5") / size))) <= 1e-15
 
 
 def test_a_search_goes_on_where_it_ended() -> None:
-    search = FirstZero([Circle()], [level("0.5")], [True])
+    search = FirstZero([Circle()], [level("0.5")], [True], [0])
     assert search.until(1.0) is None
     assert search.until(2.0) is None
     assert abs(exact(search.until(4.0)) - 2 * mpf(pi) / 3) <= 1e-15
@@ -145,9 +145,9 @@ def test_a_search_goes_on_where_it_ended() -> None:
 
 def test_a_difference_of_two_computations_makes_a_touch_undecided() -> None:
     both = [Circle(), Circle(wrong=1e-9)]
-    assert FirstZero(both[:1], [level("1.00000000000001", 1.0, 0.0)], [True]).until(10.0) is None
+    assert FirstZero(both[:1], [level("1.00000000000001", 1.0, 0.0)], [True], [0]).until(10.0) is None
     # x + 1 and its error 16e-9 |y| are zero at one time; with y beside it they are not.
-    found = FirstZero(both, [level("1.00000000001", 1.0, 1e-4)], [True]).until(10.0)
+    found = FirstZero(both, [level("1.00000000001", 1.0, 1e-4)], [True], [0]).until(10.0)
     assert found is not None
 
 

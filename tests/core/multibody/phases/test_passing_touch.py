@@ -1,0 +1,90 @@
+"""A pendulum at its lowest place that touches a floor: what pushes it sideways moves it off, and nothing holds it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.multibody.solve import solve_scene
+from tests.core.multibody.worked_examples import read
+
+OUTPUTS = ("accelerations", "forces", "trajectory", "forces-in-time")
+ROD = {"kind": "rod", "name": "r", "a": "p", "b": [0, 0]}
+STRING = {"kind": "string", "name": "r", "through": ["p", [0, 0]]}
+
+
+def bob(holds: dict[str, Any], *more: dict[str, Any], floor: bool = True) -> dict[str, Any]:
+    contact = {"kind": "contact", "name": "c", "place": "p", "on": {"at": [0, -1]}}
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"p": {"mass": 1, "at": [0, -1]}},
+        "connections": [holds, *([contact] if floor else []), *more],
+    }
+
+
+def push(force: float | str) -> dict[str, Any]:
+    return {"kind": "force", "place": "p", "force": [force, 0]}
+
+
+@pytest.mark.parametrize("holds", [ROD, STRING])
+@pytest.mark.parametrize("force", [1, -30, "t^3", "t^9"])
+def test_it_moves_as_it_would_without_the_floor(holds: dict[str, Any], force: float | str) -> None:
+    times = np.linspace(0.0, 0.8, 9)
+    with_floor, alone = (
+        solve_scene(read(bob(holds, push(force), floor=floor)), times, OUTPUTS) for floor in (True, False)
+    )
+    assert with_floor.trajectory is not None
+    assert alone.trajectory is not None
+    assert with_floor.ended is None
+    for name, column in alone.trajectory.columns.items():
+        own = with_floor.trajectory.columns[name]
+        np.testing.assert_allclose(own.values, column.values, rtol=0, atol=own.error + column.error + 1e-14)
+    assert with_floor.forces is not None
+    assert with_floor.forces["c.normal"].value == 0.0
+
+
+def test_in_space_too() -> None:
+    scene = {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"p": {"mass": 1, "at": [0, 0, -1]}},
+        "connections": [
+            {"kind": "rod", "a": "p", "b": [0, 0, 0]},
+            {"kind": "contact", "name": "c", "place": "p", "on": {"at": [0, 0, -1], "normal": [0, 0, 1]}},
+            {"kind": "force", "place": "p", "force": [3, 4, 0]},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.5], OUTPUTS)
+    assert answer.accelerations is not None
+    assert answer.accelerations["p"].linear == pytest.approx([3.0, 4.0, 0.0], abs=1e-14)
+
+
+def test_at_rest_the_load_is_shared_with_the_floor() -> None:
+    answer = solve_scene(read(bob(ROD)), [0.5], OUTPUTS)
+    assert answer.forces is not None
+    assert answer.forces["c.normal"].value is None
+    assert answer.forces["c.normal"].shared_with == ("c", "r")
+
+
+def test_a_platform_hangs_on_parallel_rods_above_a_floor_that_it_touches() -> None:
+    contact = {"kind": "contact", "name": "c", "place": "b.r", "on": {"at": [0, 0]}}
+
+    def moved(*more: dict[str, Any]) -> dict[str, float]:
+        scene = {
+            "gravity": [0, -9.81],
+            "bodies": {"b": {"mass": 0.5, "inertia": 0.05, "at": [0.5, 0], "places": {"l": [-0.5, 0], "r": [0.5, 0]}}},
+            "connections": [
+                {"kind": "rod", "a": "b.l", "b": [0, 1]},
+                {"kind": "rod", "a": "b.r", "b": [1, 1]},
+                {"kind": "force", "place": "b", "force": ["t", 0]},
+                *more,
+            ],
+        }
+        found = solve_scene(read(scene), [0.5], ("trajectory",)).trajectory
+        assert found is not None
+        return {name: float(column.values[-1][0]) for name, column in found.columns.items() if "position" in name}
+
+    free = moved()
+    assert max(free.values()) > 0.51
+    assert moved(contact) == pytest.approx(free, abs=1e-12)
