@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from core.errors import InvalidParameter
 from core.formulas import names_of
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.expansion import Expansion, Series, expansion, leading_sign
 from core.multibody.laws.law import Law
 from core.multibody.laws.series import LawSeries
@@ -69,7 +69,7 @@ def table_in_pieces(table: Table, q: Sequence[Ball], v: Sequence[Ball], moving: 
         Where no piece does, or more than one: neither side of the zero is left, or the formula does not say which; and
         for an argument without a value.
     """
-    kept: list[Mapping[Key, int]] = []
+    kept: list[tuple[Mapping[Key, int], Expansion]] = []
     undecided, last = False, None
     for one in _candidates(table, q, v):
         if not one.tried:
@@ -79,16 +79,32 @@ def table_in_pieces(table: Table, q: Sequence[Ball], v: Sequence[Ball], moving: 
             undecided = True
             continue
         motion = expansion(own, ORDER)
-        signs = {key: leading_sign(series_of(one.arguments[key].law, motion, ORDER)[1:]) for key in one.tried}
-        if all(sign in (0, one.tried[key]) for key, sign in signs.items()) and signs not in kept:
-            kept.append(signs)
+        signs = {key: _sign_along(one.arguments[key].law, motion) for key in one.tried}
+        if not all(sign in (0, one.tried[key]) for key, sign in signs.items()):
+            continue
+        # What pieces of an argument depend on are arguments as well, others on every piece.
+        if not any(signs == others or _are_alike(motion, other) for others, other in kept):
+            kept.append((signs, motion))
     assert last is not None, "there is a candidate at least"
     if len(kept) != 1:
         if undecided and not kept:
             return None
         argument = last.arguments[next(iter(last.tried))].law
         raise NoPiece(argument, "lead away from the zero of what its pieces depend on, on one side alone")
-    return InPieces(*in_pieces(table, _signs(q, v, kept[0])), kept[0])
+    leads, along = kept[0]
+    return InPieces(*in_pieces(table, _signs(q, v, leads, along)), leads)
+
+
+def _sign_along(law: Law, motion: Expansion) -> int:
+    """Return the sign just after the start of an argument that is zero there."""
+    return leading_sign(series_of(law, motion, ORDER)[1:])
+
+
+def _are_alike(first: Expansion, second: Expansion) -> bool:
+    """Return whether two motions are one, as far as they are looked at."""
+    return all(
+        is_zero(x - y) for both in zip(first.places, second.places, strict=True) for x, y in zip(*both, strict=True)
+    )
 
 
 def _candidates(table: Table, q: Sequence[Ball], v: Sequence[Ball]) -> Iterator[InPieces]:
@@ -112,8 +128,13 @@ class _Open(Exception):
         self.law = law
 
 
-def _signs(q: Sequence[Ball], v: Sequence[Ball], tried: Mapping[Key, int]) -> Callable[[Law], int]:
-    """Return the signs of arguments just after a state, as far as places and rates tell or as they are supposed."""
+def _signs(
+    q: Sequence[Ball], v: Sequence[Ball], tried: Mapping[Key, int], motion: Expansion | None = None
+) -> Callable[[Law], int]:
+    """Return the signs of arguments just after a state, as far as places and rates tell, or as they are supposed.
+
+    Others follow from the motion, once it is known: where an argument stays zero, more may show that do.
+    """
 
     def sign(law: Law) -> int:
         rated = any(one.rate for name, one in law.inputs.items() if name in names_of(law.root))
@@ -125,9 +146,11 @@ def _signs(q: Sequence[Ball], v: Sequence[Ball], tried: Mapping[Key, int]) -> Ca
         found = leading_sign(series)
         if found or not law.inputs:
             return found
-        if key_of(law) not in tried:
+        if key_of(law) in tried:
+            return tried[key_of(law)]
+        if motion is None:
             raise _Open(law)
-        return tried[key_of(law)]
+        return _sign_along(law, motion)
 
     return sign
 

@@ -147,3 +147,24 @@ def test_an_argument_is_searched_up_to_the_end_of_its_domain() -> None:
     first, speed = np.sqrt(1.5), np.sqrt(1.5)
     assert [event.kind for event in found.events] == ["switch", "formula"]
     assert [event.time for event in found.events] == pytest.approx([first, first + 0.25 / speed], rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("force", "velocity", "place"),
+    [
+        ("abs(abs(abs(x)))", 0, 0.0),
+        ("abs(abs(x))", 1, np.sinh(1.0)),
+        ("abs(abs(x))", -1, -np.sin(1.0)),
+        ("1+abs(abs(x))", 0, np.cosh(1.0) - 1.0),
+        ("max(abs(x),-x)", 0, 0.0),
+        ("max(abs(x),-x)", -1, -np.sin(1.0)),
+        ("abs(min(x,-x))", 0, 0.0),
+        ("abs(x-t)-abs(t-x)", 1, 1.0),
+    ],
+)
+def test_pieces_within_pieces_begin_at_their_common_zero(force: str, velocity: float, place: float) -> None:
+    field = {"kind": "field", "name": "f", "force": [force, 0], "on": ["p"]}
+    found = answer({**scene({"velocity": [velocity, 0]}, field), "gravity": [0, 0]}, [1.0])
+    assert found.trajectory is not None
+    column = found.trajectory.columns["p.position"]
+    assert column.values[-1][0] == pytest.approx(place, abs=column.error + 1e-15)
