@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +14,7 @@ from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.placement import length
 from core.multibody.audit.strings import (
     ChainDefinition,
+    RubbingString,
     StringDefinition,
     StringPoint,
     StringRun,
@@ -43,7 +45,19 @@ def string(connection: String, reader: Reader, name: str, path: Path) -> Definit
         part = name if len(ends) == 2 else f"{name}.{number + 1}"
         runs.append(run_of(part, tuple(knots[first : last + 1]), pairs, given, reader.start))
     bodies = tuple(dict.fromkeys(body for knot in knots for body in knot.place.bodies))
-    return StringDefinition(name, bodies, tuple(runs), touch_of(reader, name, path, connection.restitution))
+    touch = touch_of(reader, name, path, connection.restitution)
+    if connection.friction is None:
+        return StringDefinition(name, bodies, tuple(runs), touch)
+    # With a wrap theta the ratio of tensions exp(mu theta) is one of their difference to their mean.
+    (run,) = runs
+    ways = [part.direction(reader.start)[1] for part in run.parts]
+    wrap = sum(float(np.arctan2(np.linalg.norm(u - w), np.linalg.norm(u + w))) * 2.0 for u, w in pairwise(ways))
+    if connection.turns is not None:
+        wrap += 2.0 * np.pi * reader.number(connection.turns, (*path, "turns"))
+    rough = touch_of(reader, name, path, connection.restitution, connection.friction)
+    shares = [2.0 * np.tanh(mu * wrap / 2.0) for mu in (rough.static, rough.kinetic)]
+    touch = replace(touch, static=shares[0], kinetic=shares[1], friction=(f"{name}.friction",))
+    return RubbingString(name, bodies, (run,), touch)
 
 
 @definition_of.register

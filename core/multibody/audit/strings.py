@@ -180,6 +180,45 @@ class StringDefinition(Definition):
         return {f"{run.name}.tension": -rate(run.extent, placement, motion) for run in self.runs}
 
 
+@dataclass(frozen=True)
+class RubbingString(StringDefinition):
+    """A string over fixed pegs, on which it rubs: its tension is the mean of those at its ends.
+
+    Its friction, by which the tension grows from the first end to the last, slips with half of the difference of the
+    rates of the parts at the ends; `touch` has the coefficients of that.
+    """
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return self.touch.static > 0.0
+
+    def _passed(self, placement: Placement) -> Numbers:
+        """Return half of what the first part is longer than the last (m)."""
+        (run,) = self.runs
+        return (run.parts[0].extent(placement) - run.parts[-1].extent(placement)) / 2.0
+
+    def slips(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.slips`."""
+        return {f"{self.name}.tension": rate(self._passed, placement, motion)}
+
+    def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.efforts`."""
+        return {
+            **super().efforts(placement, motion),
+            f"{self.name}.friction": rate(self._passed, placement, motion),
+        }
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """See `Definition.forces`."""
+        return f"{self.name}.tension", f"{self.name}.friction"
+
+    def derived(self, placement: Placement, motion: Motion, forces: Mapping[str, Numbers]) -> Mapping[str, Numbers]:
+        """See `Definition.derived`: the tensions at the ends."""
+        mean, half = forces[f"{self.name}.tension"], forces[f"{self.name}.friction"] / 2.0
+        return {f"{self.name}.1.tension": mean - half, f"{self.name}.2.tension": mean + half}
+
+
 def straight(a: StringPoint, b: StringPoint, sides: tuple[str | None, str | None], placement: Placement) -> Straight:
     """Return the straight part that touches the given sides of its drums at the start.
 

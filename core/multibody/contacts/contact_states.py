@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -152,7 +152,7 @@ def phase_table(
 def force_names(one: Unilateral) -> tuple[str, ...]:
     """Return what the forces of a unilateral measure are called."""
     if one.closes == "taut":
-        return (f"{one.name}.tension",)
+        return (f"{one.name}.tension",) if one.slip is None else (f"{one.name}.tension", f"{one.name}.friction")
     if one.unit == "N m":
         return (f"{one.name}.torque",)
     if one.tangents is not None:
@@ -176,7 +176,16 @@ def forces_of(unilateral: Sequence[Unilateral], states: Sequence[State], phase: 
             elif row is not None and state.sense:
                 terms = [(row, constant(-state.sense * one.kinetic))]
             found.append(Force(names[1], "N", terms))
+            if one.closes == "taut":
+                found.extend(_at_ends(one.name, *found[-2:]))
     return [*found, *_sums(unilateral, found)]
+
+
+def _at_ends(name: str, mean: Force, change: Force) -> Iterator[Force]:
+    """Yield the tensions at the ends of a string that rubs: half of its friction below and above their mean."""
+    for number, half in ((1, -ONE / 2), (2, ONE / 2)):
+        terms = [(row, combined((half, factor))) for row, factor in change.terms]
+        yield Force(f"{name}.{number}.tension", "N", [*mean.terms, *terms])
 
 
 def _sums(unilateral: Sequence[Unilateral], forces: Sequence[Force]) -> list[Force]:

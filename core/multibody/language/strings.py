@@ -16,7 +16,9 @@ class String(Connection):
     """An inextensible string through places and over drums; a drum without slip divides it.
 
     It is taut at the start unless it is longer than its way. `restitution` is that of the jerk when it becomes taut;
-    where it is given, velocities may open or jerk the string at the start.
+    where it is given, velocities may open or jerk the string at the start. Between its ends it may rub on pegs, points
+    of the ground, with `friction`: one coefficient or two, that of sticking first. Around them it winds by the angle
+    between its parts, and as many whole `turns` beside that.
     """
 
     through: Sequence[Place]
@@ -25,13 +27,15 @@ class String(Connection):
     length: Number | None = None
     restitution: Number | None = None
     order: Number | None = None
+    friction: Number | Sequence[Number] | None = None
+    turns: Number | None = None
     name: str | None = None
     kind: ClassVar[str] = "string"
 
     @property
     def one_sided(self) -> bool:
-        """See `Connection.one_sided`: where a jerk is foreseen."""
-        return self.restitution is not None
+        """See `Connection.one_sided`: where a jerk is foreseen, and where it sticks or slips on pegs."""
+        return self.restitution is not None or self.friction is not None
 
     def places(self) -> Iterable[object]:
         """See `Connection.places`."""

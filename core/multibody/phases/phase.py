@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero
+from core.errors import NotApplicable
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero, substituted
 from core.multibody.contacts.complementarity import Decided
 from core.multibody.contacts.contact_responses import slip_rate
 from core.multibody.contacts.contact_start import ContactStart
@@ -245,13 +246,23 @@ def phase_of(
 
 
 def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:
-    """Return the models of the table of a phase; a series runs in pairs, judged by a coarser one."""
+    """Return the models of the table of a phase; a series runs in pairs, judged by a coarser one.
+
+    Raises
+    ------
+    NotApplicable
+        Where something moves that a law takes to be at rest.
+    """
     measures = copy.copy(base.measures)
     measures.table = phase.table
     measures.forces = [*base.measures.forces, *forces_of(decided.unilateral, decided.states, phase)]
     if any(row.slide is not None for row in phase.table.rows):
         return turning_model(replace(base, measures=measures), decided.unilateral, phase.normal, start)
     found = models_of(replace(base, measures=measures), start.moved, start.fitted)
+    for kept in measures.kept:
+        changes = substituted(kept.measure, found.whole.reduced.expressions)
+        if any(key and not is_zero(x) for key, x in changes.items()):
+            raise NotApplicable(kept.rule, path=kept.path, remedy=kept.remedy)
     for _, motion in found.whole.parts:
         motion.keep_to_pairs()
     return found

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from core.errors import Path
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, gradient
 from core.multibody.language.contacts import ImpactLaw
 
@@ -90,6 +91,25 @@ class Limit:
     force: int | None = None
     length: Poly | None = None
     scale: float = 0.0
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A polynomial of the coordinates that keeps its value all the time, where a law rests on that.
+
+    Attributes
+    ----------
+    measure : polynomial
+    rule, remedy : str
+        What the description must be, and how, where it does not.
+    path : path
+        To what of the description the rule concerns.
+    """
+
+    measure: Poly
+    rule: str
+    remedy: str
+    path: Path
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
     InvalidParameter
         Where it names nothing that can touch, or coefficients out of their ranges.
     """
-    static, kinetic = _friction(measures, connection.friction, (*path, "friction"))
+    static, kinetic = coefficients_of_friction(measures, connection.friction, (*path, "friction"))
     restitution, order = bounciness(measures, connection, path)
     rubs = not is_zero(static)
     law = impact_law(measures, connection, path)
@@ -94,7 +94,8 @@ def bounciness(measures: Measures, connection: Contact | String, path: Path) -> 
     return restitution, order
 
 
-def _friction(measures: Measures, value: object, path: Path) -> tuple[Ball, Ball]:
+def coefficients_of_friction(measures: Measures, value: object, path: Path) -> tuple[Ball, Ball]:
+    """Return the coefficients of sticking and of sliding, zero where none is given."""
     if value is None:
         return ZERO, ZERO
     if isinstance(value, Sequence) and not isinstance(value, str):

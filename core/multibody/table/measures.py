@@ -24,7 +24,7 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     product,
 )
-from core.multibody.table.connection_effects import Force, Limit, Unilateral, WorkTerm
+from core.multibody.table.connection_effects import Force, Kept, Limit, Unilateral, WorkTerm
 from core.multibody.table.coordinates import Coordinates
 from core.multibody.table.frames import Point
 from core.multibody.table.momenta import StateFunction
@@ -61,6 +61,8 @@ class Measures:
         self.fall: Poly = {}
         self.momenta: dict[str, tuple[StateFunction, StateFunction]] = {}
         self.conservative = True
+        # Polynomials that keep their values all the time, or the scene is beyond what its connections mean.
+        self.kept: list[Kept] = []
         # The horizontal direction of a plane that spins about its vertical: rates along it press across the plane.
         self.pressed_by: list[Ball] | None = None
         self._lengths: dict[tuple[str, ...], int] = {}

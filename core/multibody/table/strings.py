@@ -8,10 +8,9 @@ u.(v_b - v_a) + k_a R_a omega_a - k_b R_b omega_b. A drum without slip divides a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise, product
 
-from core.errors import InvalidParameter, Path, PlacesDisagree, SlackAtStart
+from core.errors import InvalidParameter, Path, SlackAtStart
 from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
@@ -27,12 +26,12 @@ from core.multibody.algebra.polynomials import (
 )
 from core.multibody.language.numerals import member
 from core.multibody.language.strings import String
-from core.multibody.table.connection_effects import Limit, Unilateral
-from core.multibody.table.contact_geometry import bounciness
-from core.multibody.table.frames import Point
-from core.multibody.table.measures import CLOSE, Measures
+from core.multibody.table.connection_effects import Limit
+from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.rows import add_rows
+from core.multibody.table.rubbing_strings import string_on_pegs
+from core.multibody.table.string_measures import Knot, at_most, require_long_enough, written_length
 from core.multibody.table.table import Row
 
 SIDES: Mapping[str, tuple[int, int]] = {"left": (0, -1), "right": (0, 1), "below": (1, -1), "above": (1, 1)}
@@ -45,31 +44,6 @@ SLACK = 1e-9
 """Share of its length by which a string may be longer than its way and still be meant as taut."""
 
 
-@dataclass
-class Knot:
-    """What a string passes: a place, or a drum.
-
-    Attributes
-    ----------
-    radius : ball or None
-        None for a place.
-    turn : polynomial or None
-        The drum's angle; None where the string slips.
-    sides : list of str or None
-        On which side each part touches, in the order of the string.
-    senses : list of int
-        The sense of winding that each part found.
-    """
-
-    point: Point
-    name: str
-    radius: Ball
-    turn: Poly | None
-    sides: list[str | None]
-    senses: list[int]
-    at: Path
-
-
 @add_rows.register
 def string(connection: String, measures: Measures, name: str, path: Path) -> None:
     """Add the coordinates and rows of a string.
@@ -80,6 +54,11 @@ def string(connection: String, measures: Measures, name: str, path: Path) -> Non
         For fewer than two things to pass, sides that do not exist or cannot be, and strings of fixed points.
     """
     knots = _knots(measures, connection, path)
+    if connection.friction is not None:
+        string_on_pegs(measures, name, connection, knots, path)
+        return
+    if connection.turns is not None:
+        raise InvalidParameter((*path, "turns"), "be left out of a string without friction")
     runs: list[list[Knot]] = [[knots[0]]]
     for knot in knots[1:]:
         runs[-1].append(knot)
@@ -174,11 +153,11 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
     if not rates:
         raise InvalidParameter((*path, "through"), "pass something that moves")
     if straight:
-        held = evaluated(total, measures.table.q) if length is None else _length(measures, length, path)
+        held = evaluated(total, measures.table.q) if length is None else written_length(measures, length, path)
         longer = combined((ONE, total), (-held, constant(ONE)))
         if measures.one_sided:
-            _require_long_enough(measures, evaluated(total, measures.table.q), held, path)
-            measures.unilateral.append(_at_most(measures, part, longer, connection, path))
+            require_long_enough(measures, evaluated(total, measures.table.q), held, path)
+            measures.unilateral.append(at_most(measures, part, longer, connection, path))
             return
         _require_taut(evaluated(total, measures.table.q), held, path)
         row = measures.hold(name, longer)
@@ -186,27 +165,12 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
         # What the string lacks to be taut is a coordinate: it follows from rates that no measure gives.
         lack = measures.table.coordinate(f"{part}.slack", "m", ZERO)
         measures.roll(part, _joined(rates, {lack: constant(ONE)}))
-        measures.unilateral.append(_at_most(measures, part, {(lack,): -ONE}, connection, path))
+        measures.unilateral.append(at_most(measures, part, {(lack,): -ONE}, connection, path))
         return
     else:
         row = measures.roll(name, rates)
     force = measures.force(f"{part}.tension", [(row, constant(-ONE))])
     measures.limits.append(Limit("slack", part, force=force))
-
-
-def _at_most(measures: Measures, part: str, longer: Poly, connection: String, path: Path) -> Unilateral:
-    """Return the measure of a string: what it is longer than its way."""
-    restitution, order = bounciness(measures, connection, path)
-    gap = combined((-ONE, longer))
-    return Unilateral(
-        part,
-        gap,
-        restitution=restitution,
-        closes="taut",
-        opens="slack",
-        order=order,
-        law=measures.coordinates.scene.impacts,
-    )
 
 
 def _require_taut(way: Ball, length: Ball, path: Path) -> None:
@@ -216,31 +180,24 @@ def _require_taut(way: Ball, length: Ball, path: Path) -> None:
         )
 
 
-def _require_long_enough(measures: Measures, way: Ball, length: Ball, path: Path) -> None:
-    if not measures.sketch and way - length > CLOSE * length:
-        raise PlacesDisagree(
-            (*path, "length"), f"be at least {float(way):.10g} m, the way it goes at the start", remedy="leave it out"
-        )
-
-
 def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: String, path: Path) -> None:
     """Hold two points at a distance, as long as that takes a pull."""
     length = connection.length
     if measures.one_sided:
         d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
-        square = measures.squared(d) if length is None else _length(measures, length, path) ** 2
+        square = measures.squared(d) if length is None else written_length(measures, length, path) ** 2
         if not square > 0:
             raise InvalidParameter((*path, "through"), "pass places that are apart")
         way = measures.squared(d)
-        _require_long_enough(measures, way.sqrt() if way > 0 else ZERO, square.sqrt(), path)
+        require_long_enough(measures, way.sqrt() if way > 0 else ZERO, square.sqrt(), path)
         half = 1 / (2 * square.sqrt())
         longer = combined((half, dot(d, d)), (-half * square, constant(ONE)))
-        measures.unilateral.append(_at_most(measures, part, longer, connection, path))
+        measures.unilateral.append(at_most(measures, part, longer, connection, path))
         return
     if length is not None:
         d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
         way = measures.squared(d)
-        _require_taut(way.sqrt() if way > 0 else ZERO, _length(measures, length, path), path)
+        _require_taut(way.sqrt() if way > 0 else ZERO, written_length(measures, length, path), path)
     measures.rod(part, a.point, b.point, length, None, path)
     rod = measures.forces.pop()
     force = measures.force(f"{part}.tension", rod.terms)
@@ -306,10 +263,3 @@ def _times(key: tuple[int, ...], index: int) -> Poly:
 
 def _joined(first: LinearForm, second: LinearForm) -> LinearForm:
     return {j: combined((ONE, first.get(j, {})), (ONE, second.get(j, {}))) for j in {*first, *second}}
-
-
-def _length(measures: Measures, value: object, path: Path) -> Ball:
-    length = measures.numerals.number(value, (*path, "length"))
-    if not length > 0:
-        raise InvalidParameter((*path, "length"), "be greater than 0 m")
-    return length

@@ -1,0 +1,143 @@
+"""Strings with friction on pegs: Euler's law of the capstan, against closed forms."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from core.errors import InvalidParameter, NotApplicable
+from core.multibody.solve import solve_scene
+from core.multibody.statics.thresholds import RestOf
+from tests.core.multibody.worked_examples import column, force, read
+from tests.oracles.plain_engine.comparison.comparing import compared
+
+G = 9.81
+OVER_TWO_PEGS = ["light", [-0.1, 0], [0.1, 0], "heavy"]
+
+
+def over(through: list[Any], speed: float = 0.0, heavy: float = 3, **more: Any) -> dict[str, Any]:
+    """Return masses of 1 kg and more that hang 1 m below two pegs, the lighter rising at a speed."""
+    return {
+        "gravity": [0, -G],
+        "bodies": {
+            "light": {"mass": 1, "at": [-0.1, -1], "velocity": [0, speed]},
+            "heavy": {"mass": heavy, "at": [0.1, -1]},
+        },
+        "connections": [{"kind": "string", "name": "s", "through": through} | more],
+    }
+
+
+@pytest.mark.parametrize("through", [OVER_TWO_PEGS, OVER_TWO_PEGS[::-1]], ids=["forth", "back"])
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_heavier_mass_sinks_by_the_ratio_of_the_capstan(through: list[Any], turned: bool) -> None:
+    """a = g (M - k m)/(M + k m), k = exp(mu pi); both tensions by Newton's law for each mass."""
+    k = math.exp(0.2 * math.pi)
+    gain = G * (3 - k) / (3 + k)
+    scene = over(through, friction=0.2)
+    if turned:
+        # By the angle of 3-4-5, and moved far away.
+        def place(x: float, y: float) -> list[str]:
+            return [f"1000 + ({x})*4/5 - ({y})*3/5", f"-500 + ({x})*3/5 + ({y})*4/5"]
+
+        scene["gravity"] = [f"{G}*3/5", f"-{G}*4/5"]
+        for name, x in (("light", -0.1), ("heavy", 0.1)):
+            scene["bodies"][name] = scene["bodies"][name] | {"at": place(x, -1), "velocity": [0, 0]}
+        scene["connections"][0]["through"] = [x if isinstance(x, str) else place(*x) for x in through]
+    answer = solve_scene(read(scene), [0.0, 0.5], ["trajectory", "forces-in-time", "work-in-time", "energy-in-time"])
+    assert answer.model.name == "constant acceleration"
+    fall = column(answer, "heavy.position").values[0] - column(answer, "heavy.position").values[1]
+    assert float((fall**2).sum() ** 0.5) == pytest.approx(gain / 8, rel=1e-12)
+    ends = {through[0]: "s.1.tension", through[-1]: "s.2.tension"}
+    low, high = (column(answer, ends[name]).values[1] for name in ("light", "heavy"))
+    assert low == pytest.approx(G + gain, rel=1e-13)
+    assert high == pytest.approx(3 * (G - gain), rel=1e-13)
+    assert high / low == pytest.approx(k, rel=1e-13)
+    assert column(answer, "s.tension").values[1] == pytest.approx((low + high) / 2, rel=1e-14)
+    # The string rubs over the way by which it passes.
+    assert column(answer, "s.friction.work").values[1] == pytest.approx(-(high - low) * gain / 8, rel=1e-12)
+
+
+def test_what_moves_is_braked_and_held_by_the_static_coefficient() -> None:
+    """Rising at 2 m/s the light mass slows down at g (k M - m)/(m + k M) while it sinks, and then the string sticks."""
+    k = math.exp(0.2 * math.pi)
+    answer = solve_scene(
+        read(over(OVER_TWO_PEGS, -2, friction=[0.5, 0.2])), [0.0, 0.5], ["trajectory", "forces-in-time"]
+    )
+    (event,) = answer.events
+    assert (event.kind, event.name) == ("stick", "s")
+    assert event.time == pytest.approx(2 / (G * (3 * k - 1) / (1 + 3 * k)), rel=1e-13)
+    assert column(answer, "light.velocity").values[1] == pytest.approx([0, 0], abs=1e-15)
+    assert column(answer, "s.friction").values[1] == pytest.approx(2 * G, rel=1e-13)
+
+
+def test_thresholds_of_rest_are_those_of_the_capstan() -> None:
+    """ln(M/m)/pi of the coefficient, and ln(M/m)/(2 pi mu) - 1/2 turns around a bollard."""
+    held = over(OVER_TWO_PEGS, friction=0.5)
+    wound = over(OVER_TWO_PEGS, heavy=50, friction=0.2, turns=3)
+    expected = [math.log(3) / math.pi, math.log(50) / (0.4 * math.pi) - 0.5]
+    for scene, entry, value in zip((held, wound), ("friction", "turns"), expected, strict=True):
+        answer = solve_scene(read(scene), outputs=[RestOf(f"/connections/0/{entry}", (0, 9))])
+        assert answer.thresholds is not None
+        assert answer.thresholds[0].lower.value == pytest.approx(value, rel=1e-13)
+
+
+def test_a_string_that_goes_on_straight_does_not_rub() -> None:
+    scene = {
+        "bodies": {"a": {"mass": 1, "at": [-1, 0], "velocity": [1, 0]}, "b": {"mass": 1, "at": [1, 0]}},
+        "connections": [{"kind": "string", "name": "s", "through": ["a", [0, 0], "b"], "friction": 0.4}],
+    }
+    answer = solve_scene(read(scene), outputs=["forces"])
+    assert force(answer, "s.friction") == 0.0
+
+
+def test_in_space_it_holds_as_in_the_plane() -> None:
+    plane = over(OVER_TWO_PEGS, friction=0.2)
+    space = {
+        "gravity": [0, 0, -G],
+        "bodies": {"light": {"mass": 1, "at": [0, -0.1, -1]}, "heavy": {"mass": 3, "at": [0, 0.1, -1]}},
+        "connections": [plane["connections"][0] | {"through": ["light", [0, -0.1, 0], [0, 0.1, 0], "heavy"]}],
+    }
+    one, other = (solve_scene(read(scene), [0.4], ["trajectory"]) for scene in (plane, space))
+    assert column(one, "heavy.position").values[0][1] == column(other, "heavy.position").values[0][2]
+
+
+@pytest.mark.parametrize(
+    ("scene", "times"),
+    [
+        (over(OVER_TWO_PEGS, -2, friction=[0.5, 0.2]), [0.0, 0.2, 0.5]),
+        (over(OVER_TWO_PEGS, -2, heavy=1.1, friction=0.2, length=2.5), [0.0, 0.3, 0.6]),
+        (over(OVER_TWO_PEGS, -1, friction=0.1, restitution=0.5, length=2.3), [0.0, 0.2, 0.4]),
+    ],
+    ids=["sticks", "becomes taut", "jerks"],
+)
+def test_the_plain_engine_agrees(scene: dict[str, Any], times: list[float]) -> None:
+    verdict = compared(scene, times)
+    assert verdict.differences == []
+    assert not verdict.not_supported
+    assert verdict.compared > 0
+
+
+def test_a_string_whose_parts_swing_is_refused() -> None:
+    scene = over(OVER_TWO_PEGS, friction=0.2)
+    scene["bodies"]["light"]["velocity"] = [0.1, 0]
+    with pytest.raises(NotApplicable, match="change their directions") as caught:
+        solve_scene(read(scene), [1.0], ["trajectory"])
+    assert caught.value.path == ("connections", 0, "friction")
+
+
+@pytest.mark.parametrize(
+    ("changes", "path"),
+    [
+        ({"through": ["light", "heavy"]}, ("through",)),
+        ({"through": ["light", [0, 0]]}, ("through",)),
+        ({"friction": -1}, ("friction",)),
+        ({"turns": -1}, ("turns",)),
+        ({"friction": None}, ("turns",)),
+    ],
+)
+def test_faults_name_their_field(changes: dict[str, Any], path: tuple[str, ...]) -> None:
+    with pytest.raises(InvalidParameter) as caught:
+        solve_scene(read(over(**{"through": OVER_TWO_PEGS, "friction": 0.2, "turns": 1, **changes})), [1.0])
+    assert caught.value.path == ("connections", 0, *path)
