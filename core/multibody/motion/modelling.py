@@ -18,6 +18,7 @@ from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.language.switches import switches_of
 from core.multibody.laws.series import values_at
+from core.multibody.motion.driven_modes import driven_modes
 from core.multibody.motion.euler_poisson import EulerPoisson
 from core.multibody.motion.free_body import freely_turning
 from core.multibody.motion.generic_equation import SceneSystem, scene_system
@@ -271,6 +272,9 @@ def _motion(piece: Piece) -> Motion:
     part, gain, chosen = piece.table, piece.acceleration, piece.chosen
     if all(is_zero(x) for x in part.v) and all(is_zero(x) for x in gain):
         return Rest(part)
+    swung = driven_modes(part, gain) if part.acting or any(unit == "s" for unit in part.units) else None
+    if swung is not None:
+        return swung
     if part.acting:
         return Numerical.of(part, gain, chosen, "forces are formulas of time, places or rates that are not linear")
     linear = all(row.constant for row in part.rows)

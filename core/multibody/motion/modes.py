@@ -81,9 +81,11 @@ class Modes(Motion):
         matrix.append([ZERO] * size)
         return cls(table, matrix)
 
-    @property
+    @cached_property
     def _undamped(self) -> bool:
-        return not self.table.damping
+        """Whether the squares of its roots are real: there is no damping, and what pulls has a potential."""
+        pulls = self.table.stiffness
+        return not self.table.damping and all(is_zero(x - entry(pulls, (j, i))) for (i, j), x in pulls.items())
 
     def _spectrum(self) -> tuple[list[Any], Any] | None:
         """Return roots and vectors of A, negative, or with damping of the homogeneous first-order system."""

@@ -30,6 +30,7 @@ from core.multibody.statics.resting_places import RestingPlaces
 from core.multibody.statics.small_motions import small_motions, soft_directions
 from core.multibody.statics.static_equations import StaticEquations
 from core.multibody.table.description import Described, described
+from core.multibody.table.law_pieces import all_entered
 from core.multibody.table.table import Table
 
 _FEW_BITS = 64
@@ -48,8 +49,6 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
     BudgetExceeded
         If the search would take too long.
     """
-    if found.measures.table.laws:
-        raise NotApplicable("equilibria are not answered yet where forces are formulas", path=("outputs",))
     spread = _spread(found.measures.table)
     if spread > _FEW_BITS:
         # Beside the forces on heavy bodies those on light ones keep their bits.
@@ -59,7 +58,13 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
 
 
 def _found(found: Described) -> tuple[Equilibrium, ...]:
-    small = reduced(found.measures.table, pinning=False)
+    entered = all_entered(found.measures.table)
+    if entered is None:
+        raise NotApplicable(
+            "equilibria are not answered yet where forces are formulas that read the time or are not linear",
+            path=("outputs",),
+        )
+    small = reduced(entered, pinning=False)
     table = small.table
     frames = found.measures.coordinates.frames
     tied = [r for r, row in enumerate(table.rows) if row.measure is None]
@@ -83,7 +88,7 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
     exact = RestEquations(table, chosen, ties, [arb(2) ** power for power in powers])
     start = state(table, units)[0][:, 0]
     places = solutions_of(equations, start, len(table.names) - len(chosen))
-    resting = RestingPlaces(found, small)
+    resting = RestingPlaces(found, entered, small)
     turns = {j for tie in ties.values() for key in tie.turn for j in key}
     found_places = [place for q, x in places for place in [exact.place(q, x)] if place is not None]
     # Of places that differ by whole turns alone that with the fewest is kept.

@@ -41,14 +41,16 @@ class RestingPlaces:
     Parameters
     ----------
     found : Described
+    entered : Table
+        Its table with formulas as entries.
     small : Reduced
     """
 
-    def __init__(self, found: Described, small: Reduced) -> None:
+    def __init__(self, found: Described, entered: Table, small: Reduced) -> None:
         self.expressions, measures = small.expressions, found.measures
         self._holds = Holds(
-            measures.table,
-            [(r, j, _terms(p)) for r, row in enumerate(measures.table.rows) for j, p in row.rates.items()],
+            entered,
+            [(r, j, _terms(p)) for r, row in enumerate(entered.rows) for j, p in row.rates.items()],
             [
                 (
                     [(row, _terms(p)) for row, p in measures.forces[limit.force].terms],

@@ -6,7 +6,7 @@ is constant then is a load, and what is linear in rates a damping.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.formulas import Node, names_of, value_of
@@ -14,7 +14,7 @@ from core.multibody.algebra.polynomials import Ball
 from core.multibody.language.numerals import BALLS
 from core.multibody.language.switches import SWITCHING, argument_of, switches_of
 from core.multibody.laws.law import Law
-from core.multibody.laws.linear import linear_in_rates
+from core.multibody.laws.linear import Linear, linear_form
 from core.multibody.table.table import Table
 
 Key = tuple[Node, str]
@@ -122,12 +122,41 @@ def entered(table: Table, law: Law) -> Law:
         for i, x in law.push.items():
             table.add_load(i, x * constant)
         return replace(law, in_table=True)
-    rates: Mapping[str, Ball] | None = linear_in_rates(law.root, law.inputs, law.numbers)
-    if rates is None:
+    form = linear_form(law.root, law.inputs, law.numbers)
+    if form is None or form.exponentials or not all(name and law.inputs[name].rate for name in form.factors):
         return law
-    for name, factor in rates.items():
-        for key, slope in law.inputs[name].form.items():
-            if key:
-                for i, x in law.push.items():
-                    table.add_damping(i, key[0], -factor * slope * x)
+    enter(table, law, form)
     return replace(law, in_table=True)
+
+
+def enter(table: Table, law: Law, form: Linear) -> None:
+    """Add what is constant or linear in places and rates to the loads, stiffness and damping of a table."""
+    for name, factor in form.factors.items():
+        given = law.inputs[name] if name else None
+        for i, x in law.push.items():
+            if given is None:
+                table.add_load(i, x * factor)
+                continue
+            for key, slope in given.form.items():
+                if key and given.rate:
+                    table.add_damping(i, key[0], -x * factor * slope)
+                elif key:
+                    table.add_stiffness(i, key[0], -x * factor * slope)
+                elif not given.rate:
+                    table.add_load(i, x * factor * slope)
+
+
+def all_entered(table: Table) -> Table | None:
+    """Return a table without formulas, whose forces at rest are its entries; None where some are not linear.
+
+    What the time or the motion changes has no part in it: formulas that read the time are not linear here.
+    """
+    found = replace(table, load=dict(table.load), stiffness=dict(table.stiffness), damping=dict(table.damping), laws=[])
+    for law in table.laws:
+        form = linear_form(law.root, law.inputs, law.numbers)
+        timed = {i for one in law.inputs.values() for i in one.coordinates() if table.units[i] == "s"}
+        if form is None or form.exponentials or timed:
+            return None
+        if not law.in_table:
+            enter(found, law, form)
+    return found
