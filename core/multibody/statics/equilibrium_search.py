@@ -34,6 +34,12 @@ _CONVERGED = 1e-10
 """Relative size of the last step and of the forces that are left: rounding leaves some 1e-13 of a few dozen
 unknowns."""
 
+_IN_REACH = 1e-3
+"""Length of a last step, relative to the size, within which a place of rest lies whose forces are rounding alone: where
+one direction is softer than others by 1e9, rounding is amplified by as much. Balls find it from there."""
+_SPREAD = 16.0
+"""Ends that are so many last steps apart are two, where these are long."""
+
 _SETTLED = 1e-6
 """Largest last relative change of the multipliers: beside a length of zero they grow without bound."""
 _ENDED = 1e-13
@@ -81,25 +87,32 @@ def solutions_of(equations: StaticEquations, start: Floats, freedom: int) -> lis
     q = start + random.normal(size=(count, n)) * random.uniform(0.05, 2.0, size=(count, 1))
     q[0] = start
     multipliers = np.zeros((count, m))
-    done = _followed(equations.arrays, q, multipliers)
-    q, multipliers = q[done], multipliers[done]
+    steps = _followed(equations.arrays, q, multipliers)
+    done = np.isfinite(steps)
+    # Of ends that are one those come first that are known best.
+    order = np.flatnonzero(done)[np.argsort(steps[done] > _CONVERGED, kind="stable")]
+    q, multipliers, steps = q[order], multipliers[order], steps[order]
     found: list[tuple[Floats, Floats]] = []
     while len(q) and len(found) < MOST_FOUND:
         found.append((q[0], multipliers[0]))
-        other = np.abs(q - q[0]).max(axis=1) > _SAME * (1.0 + np.abs(q).max(axis=1))
-        q, multipliers = q[other], multipliers[other]
+        far = np.maximum(_SAME, _SPREAD * np.maximum(steps, steps[0]))
+        other = np.abs(q - q[0]).max(axis=1) > far * (1.0 + np.abs(q).max(axis=1))
+        q, multipliers, steps = q[other], multipliers[other], steps[other]
     return found
 
 
 @kernel()
-def _followed(arrays: StaticArrays, q: Floats, multipliers: Floats) -> np.ndarray:
-    """Follow each start in place; return which have come to a solution, shape (c,)."""
+def _followed(arrays: StaticArrays, q: Floats, multipliers: Floats) -> Floats:
+    """Follow each start in place; return the last steps of those that have come to a solution, shape (c,).
+
+    They are relative to the size, and infinite for others.
+    """
     size = q.shape[1] + multipliers.shape[1]
-    found, system, right = np.zeros(len(q), dtype=np.bool_), np.empty((size, size)), np.empty(size)
+    found, system, right = np.full(len(q), np.inf), np.empty((size, size)), np.empty(size)
     for s in range(len(q)):
         _begin(arrays, q[s], multipliers[s], system, right)
         if _newton(arrays, q[s], multipliers[s], system, right):
-            found[s] = _is_solution(arrays, q[s], multipliers[s], system, right)
+            found[s] = _last_step(arrays, q[s], multipliers[s], system, right)
     return found
 
 
@@ -184,18 +197,20 @@ def _step(arrays: StaticArrays, system: Floats, right: Floats) -> bool:
 
 
 @kernel()
-def _is_solution(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats) -> bool:
-    """Return whether the equations hold, and neither near a length of zero nor at infinity."""
+def _last_step(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats) -> float:
+    """Return the last step; infinity where the equations do not hold, near a length of zero, and far out."""
     n = len(q)
     left, terms, off = linearised(arrays, q, multipliers, system, right)
     size, largest = 1.0 + _largest(q), _largest(multipliers)
     singular = _step(arrays, system, right)
     if singular and (largest > _DWARFED * terms or size > _REMOTE):
-        return False
+        return np.inf
     # A step alone may be short where the equations are nearly singular and not solved.
     solved = left <= _CONVERGED and off < _CONVERGED * size**2
     settled = _largest(right[n:]) <= _SETTLED * (largest + terms)
-    return solved and settled and _largest(right[:n]) < _CONVERGED * size
+    step = _largest(right[:n]) / size
+    short = step < (_IN_REACH if left <= _ENDED else _CONVERGED)
+    return step if solved and settled and short else np.inf
 
 
 @kernel()

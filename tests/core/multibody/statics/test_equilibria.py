@@ -8,6 +8,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from scipy.optimize import brentq
 
 from core.errors import BudgetExceeded, NotApplicable
@@ -151,6 +152,34 @@ def test_a_rod_on_a_torsion_spring_stands_in_three_ways() -> None:
     assert [mode[:2] for mode in angles[2][2]] == [pytest.approx((frequency, 0.0), rel=1e-12)]
     growth = math.sqrt(0.905 * 3)
     assert [mode[:2] for mode in angles[1][2]] == [pytest.approx((0.0, growth), rel=1e-12)]
+
+
+@pytest.mark.parametrize("power", [3, 6, 8, 9, 10, 13, 16, 20])
+@pytest.mark.parametrize("side", ["+", "-"])
+def test_beside_its_bifurcation_it_stands_in_one_way_or_three(power: int, side: str) -> None:
+    """k = 4.905 is critical; just below it the rod leans by the root of 6 (1 - k/4.905), and a little more."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "rod": {"mass": 1, "inertia": "1/12", "at": [0, 0.5], "angle": "pi/2", "places": {"foot": [-0.5, 0]}}
+        },
+        "connections": [
+            {"kind": "pin", "a": "rod.foot", "b": [0, 0]},
+            {"kind": "torsion-spring", "a": "rod", "stiffness": f"4.905{side}1e-{power}", "rest_angle": "pi/2"},
+        ],
+    }
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    leaning = sorted((math.pi / 2 - one.angles["rod"], one.stable) for one in found)
+    if side == "+":
+        assert leaning == [(0.0, True)]
+        return
+    with mp.workdps(60):
+        stiffness, critical = mpf("4.905") - mpf(10) ** -power, mpf("4.905")
+        about = mp.sqrt(6 * (1 - stiffness / critical))
+        bent = float(mp.findroot(lambda x: (stiffness * x - critical * mp.sin(x)) / x, about))
+    assert [one[0] for one in leaning] == pytest.approx([-bent, 0.0, bent], abs=3e-16)
+    assert [one[1] for one in leaning] == [True, False, True]
 
 
 @pytest.mark.parametrize(("spin", "grows"), [(108.49884, True), (108.49886, False)])
