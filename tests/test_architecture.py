@@ -361,6 +361,7 @@ TESTED_IN |= {
         "motion/test_numerical": (
             "equations/packed motion/products motion/returns motion/series motion/series_pairs motion/vertical_symmetry"
         ),
+        "equations/test_saddle": "algebra/square_inverse equations/schur_complement",
         "phases/test_phase_answer": "phases/phase_states phases/phase_columns",
         "phases/test_described_system": "phases/method_samples phases/smooth_motion trajectory/scene_request",
         "test_solve": ("answer model_answer motion/motion motion/uniform motion/whole trajectory/events"),

@@ -23,12 +23,14 @@ import mpmath
 from benchmarks.described_scenes.double_pendulum import ENTRANTS, EXACT, Entrant
 from benchmarks.described_scenes.drake import PATIENCE, Late
 from benchmarks.machine import RESULTS, described
-from core.multibody.solve import OF_MOTION
+from core.multibody.language.reading import scene_from
+from core.multibody.solve import OF_MOTION, solve_scene
 from core.systems.budget import Budget
 from service.requests.described_scene import DescribedSceneRequest
 from service.routes.described_scenes import described_examples, solved
 
 REPEATS = 25
+LINKS = (4, 16, 32, 64, 100)
 TOO_LONG = 20.0
 """After a run that takes longer (s), dearer settings are left out."""
 
@@ -68,6 +70,23 @@ def catalogue(repeats: int) -> dict[str, Any]:
         rows[entry["name"]] = {name: round(1e3 * least(run, repeats), 3) for name, run in runs.items()}
         rows[entry["name"]]["contacts"] = "phases" in runs["whole"]()
     return rows
+
+
+def chains(repeats: int) -> dict[str, float]:
+    """Return milliseconds of the whole answer about chains of rods for 1 s, released from the horizontal, by links."""
+    found = {}
+    for count in LINKS:
+        scene = scene_from(chain(count))
+        found[str(count)] = round(1e3 * least(lambda s=scene: solve_scene(s, [1.0], ("trajectory",), 1e-9), repeats), 2)
+    return found
+
+
+def chain(count: int) -> dict[str, Any]:
+    """Return rods of length 1 in a row, each pinned to the one before."""
+    places = {"top": [-0.5, 0], "end": [0.5, 0]}
+    bodies = {f"rod-{k}": {"mass": 1, "inertia": "1/12", "at": [k + 0.5, 0], "places": places} for k in range(count)}
+    pins = [{"kind": "pin", "a": f"rod-{k}.top", "b": f"rod-{k - 1}.end" if k else [0, 0]} for k in range(count)]
+    return {"gravity": [0, -9.8125], "bodies": bodies, "connections": pins}
 
 
 def summary(rows: dict[str, Any]) -> dict[str, float]:
@@ -115,6 +134,7 @@ def main() -> None:
             "median set-up": statistics.median(before_motion),
             "scenes": scenes,
         },
+        "chains, 1 s, milliseconds by links": chains(3),
         "double pendulum, 10 s": {entrant.name: dial(entrant) for entrant in there},
     }
     text = json.dumps(result, indent=1) + "\n"

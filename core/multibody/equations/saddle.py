@@ -1,29 +1,25 @@
 """The matrix [M -(W + X)^T; W 0] of a table at a place, and its inverse in doubles and in pairs of doubles.
 
-The inverse in doubles is by Gauss and Jordan's elimination. That in pairs starts from it: with R = 1 - Y A in pairs for
-the inverse Y in doubles, the inverse is Y + R Y + R^2 Y + ..., and all but the first term are needed in doubles only.
-Where R is no small matrix, the elimination runs in pairs.
+Small ones are inverted as any matrix is, large ones by blocks, because M is the same at every place. Where the inverse
+in doubles does not do for that in pairs, the elimination runs in pairs.
 """
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from core.arrays import Floats
-from core.compiled import fma, kernel
-from core.double_double import dd_add, fast_two_sum
-from core.lanes import WIDTH, alike, lanes_at, put_lanes
-from core.multibody.algebra.pair_arrays import gathered, invert_pairs
+from core.compiled import kernel
+from core.double_double import dd_add
+from core.multibody.algebra.pair_arrays import invert_pairs
+from core.multibody.algebra.square_inverse import Square, correct_inverse, invert, square_space
 from core.multibody.equations.packed import Packed
-
-SUMMED_BELOW = 2.0**-10
-"""Largest sum of a row of R for which the series is summed; it then takes at most six terms."""
+from core.multibody.equations.schur_complement import Blocks, blocks_of, join_blocks, join_blocks_in_pairs
 
 FAILED, DIRECT, CORRECTED = 0, 1, 2
-"""How the inverse was found in pairs: not at all, by elimination in pairs, from that in doubles."""
+"""How the inverse was found in pairs: not at all, by elimination in pairs, from one in doubles."""
 
 
 class Saddle(NamedTuple):
@@ -32,25 +28,18 @@ class Saddle(NamedTuple):
     Attributes
     ----------
     columns : (planes, n + m, s)
-        Column j of the inverse at [:, j], with zeros up to a multiple of the width of lanes; planes are (value, tail).
-    rows, inverse, scale : (n + m, s), (n + m, s) and (n + m,)
-        Of the elimination.
-    matrix, full : (n + m, n + m, 2)
-        In pairs.
+        Of the inverse, those of `square`.
+    square : Square
+    full : (n + m, n + m, 2)
+        Of the elimination in pairs.
+    blocks : Blocks
+        Empty where the matrix is inverted as a whole.
     """
 
     columns: Floats
-    rows: Floats
-    inverse: Floats
-    scale: Floats
-    matrix: Floats
+    square: Square
     full: Floats
-
-
-@kernel()
-def padded(n: int) -> int:
-    """Return the next multiple of the width of lanes."""
-    return (n + WIDTH - 1) // WIDTH * WIDTH
+    blocks: Blocks
 
 
 @kernel()
@@ -58,52 +47,8 @@ def saddle_space(table: Packed, planes: int) -> Saddle:
     """Return space for the inverse in doubles (one plane) or in pairs (two)."""
     size = table.load.shape[0] + table.rate.shape[0]
     paired = size if planes == 2 else 0
-    return Saddle(
-        np.zeros((planes, size, padded(size))),
-        np.zeros((size, padded(size))),
-        np.zeros((size, padded(size))),
-        np.zeros(size),
-        np.zeros((paired, paired, 2)),
-        np.zeros((paired, paired, 2)),
-    )
-
-
-@kernel()
-def _eliminated(a: Floats, out: Floats, scale: Floats) -> bool:
-    """Invert a matrix with padded rows by Gauss-Jordan elimination with scaled pivots; `a` is used up."""
-    n, s = a.shape
-    for i in range(n):
-        largest = 0.0
-        for j in range(n):
-            largest = max(largest, abs(a[i, j]))
-            out[i, j] = 1.0 if i == j else 0.0
-        if not largest > 0.0:
-            return False
-        scale[i] = 1.0 / largest
-    for k in range(n):
-        pivot, best = k, -1.0
-        for i in range(k, n):
-            size = abs(a[i, k]) * scale[i]
-            if size > best:
-                pivot, best = i, size
-        if not best > 1e-14:
-            return False
-        if pivot != k:
-            for j in range(n):
-                a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
-                out[k, j], out[pivot, j] = out[pivot, j], out[k, j]
-            scale[pivot] = scale[k]
-        factor = alike(1.0 / a[k, k])
-        for b in range(k * s, (k + 1) * s, WIDTH):
-            put_lanes(a, b, lanes_at(a, b) * factor)
-            put_lanes(out, b, lanes_at(out, b) * factor)
-        for i in range(n):
-            if i != k and a[i, k] != 0.0:
-                factor = alike(-a[i, k])
-                for b in range(0, s, WIDTH):
-                    put_lanes(a, i * s + b, fma(factor, lanes_at(a, k * s + b), lanes_at(a, i * s + b)))
-                    put_lanes(out, i * s + b, fma(factor, lanes_at(out, k * s + b), lanes_at(out, i * s + b)))
-    return True
+    square = square_space(size, planes)
+    return Saddle(square.columns, square, np.zeros((paired, paired, 2)), blocks_of(table, planes))
 
 
 @kernel()
@@ -114,7 +59,14 @@ def inverted(table: Packed, lines: Floats, space: Saddle) -> bool:
     ----------
     lines : (e,)
     """
-    n, rows = table.load.shape[0], space.rows
+    if space.blocks.weights.shape[1] > 0 and join_blocks(table, lines, space.blocks, space.columns[0]):
+        return True
+    return _inverted_as_a_whole(table, lines, space)
+
+
+@kernel()
+def _inverted_as_a_whole(table: Packed, lines: Floats, space: Saddle) -> bool:
+    n, rows = table.load.shape[0], space.square.rows
     rows[:] = 0.0
     for i in range(n):
         for j in range(n):
@@ -124,12 +76,7 @@ def inverted(table: Packed, lines: Floats, space: Saddle) -> bool:
         rows[j, n + r] -= lines[e]
         if table.binds[e] == 1:
             rows[n + r, j] = lines[e]
-    if not _eliminated(rows, space.inverse, space.scale):
-        return False
-    for i in range(rows.shape[0]):
-        for j in range(rows.shape[0]):
-            space.columns[0, j, i] = space.inverse[i, j]
-    return True
+    return invert(space.square)
 
 
 @kernel()
@@ -140,8 +87,10 @@ def inverted_pairs(table: Packed, lines: Floats, space: Saddle) -> int:
     ----------
     lines : (e, 2)
     """
-    n, size, s = table.load.shape[0], space.rows.shape[0], space.rows.shape[1]
-    a, columns, rest, whole = space.matrix, space.columns, space.rows, space.inverse
+    if space.blocks.weights.shape[1] > 0 and join_blocks_in_pairs(table, lines, space.blocks, space.columns):
+        return CORRECTED
+    n, a, columns = table.load.shape[0], space.square.matrix, space.columns
+    size = a.shape[0]
     a[:] = 0.0
     for i in range(n):
         for j in range(n):
@@ -151,48 +100,11 @@ def inverted_pairs(table: Packed, lines: Floats, space: Saddle) -> int:
         if table.binds[e] == 1:
             a[n + r, j, 0], a[n + r, j, 1] = lines[e, 0], lines[e, 1]
         a[j, n + r, 0], a[j, n + r, 1] = dd_add(a[j, n + r, 0], a[j, n + r, 1], -lines[e, 0], -lines[e, 1])
-    largest = math.inf
-    if inverted(table, lines[:, 0], space):
-        # Columns of R, which is of the order of the condition number times 2^-53, into `rest`.
-        largest = 0.0
+    if _inverted_as_a_whole(table, lines[:, 0], space) and correct_inverse(space.square):
+        return CORRECTED
+    if not invert_pairs(a, space.full):
+        return FAILED
+    for i in range(size):
         for j in range(size):
-            for b in range(0, s, WIDTH):
-                sh, sl = alike(0.0), alike(0.0)
-                if b <= j < b + WIDTH:
-                    for i in range(WIDTH):
-                        rest[j, b + i] = 1.0 if b + i == j else 0.0
-                    sh = lanes_at(rest, j * s + b)
-                for k in range(size):
-                    if a[k, j, 0] != 0.0:
-                        column = lanes_at(columns[0], k * s + b)
-                        sh, sl = gathered(sh, sl, column, alike(0.0), alike(-a[k, j, 0]), alike(-a[k, j, 1]))
-                put_lanes(rest, j * s + b, sh + sl)
-            for i in range(size):
-                largest = max(largest, abs(rest[j, i]))
-        largest *= size
-    if not largest < SUMMED_BELOW:
-        if not invert_pairs(a, space.full):
-            return FAILED
-        for i in range(size):
-            for j in range(size):
-                columns[0, j, i], columns[1, j, i] = space.full[i, j, 0], space.full[i, j, 1]
-        return DIRECT
-    terms = 1 + int(53.0 / max(1.0, -math.log2(max(largest, 2.0**-60))))
-    columns[1] = 0.0
-    for _ in range(terms):
-        # The sum Z of the terms after the first is R (Y + Z).
-        for j in range(size):
-            for k in range(size):
-                whole[j, k] = columns[0, j, k] + columns[1, j, k]
-        for j in range(size):
-            for b in range(0, s, WIDTH):
-                total = alike(0.0)
-                for k in range(size):
-                    if whole[j, k] != 0.0:
-                        total = fma(lanes_at(rest, k * s + b), alike(whole[j, k]), total)
-                put_lanes(columns[1], j * s + b, total)
-    for b in range(0, size * s, WIDTH):
-        high, low = fast_two_sum(lanes_at(columns[0], b), lanes_at(columns[1], b))
-        put_lanes(columns[0], b, high)
-        put_lanes(columns[1], b, low)
-    return CORRECTED
+            columns[0, j, i], columns[1, j, i] = space.full[i, j, 0], space.full[i, j, 1]
+    return DIRECT

@@ -16,8 +16,8 @@ from core.compiled import fma, kernel
 from core.double_double import Pair, dd_add, dd_div_d, dd_mul
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
+from core.multibody.algebra.square_inverse import padded
 from core.multibody.equations.packed import Packed
-from core.multibody.equations.saddle import padded
 
 ROW, FIRST_FROM, FIRST_TO, SECOND_FROM, SECOND_TO = 0, 1, 2, 3, 4
 """What the columns of `Products.at` say."""

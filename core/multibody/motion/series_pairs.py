@@ -17,8 +17,9 @@ from core.compiled import fma, kernel
 from core.double_double import Pair, dd_add, dd_add_d, dd_mul, dd_mul_d, fast_two_sum, two_prod, two_sum
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered, settled
+from core.multibody.algebra.square_inverse import padded
 from core.multibody.equations.packed import Packed
-from core.multibody.equations.saddle import CORRECTED, FAILED, Saddle, inverted_pairs, padded, saddle_space
+from core.multibody.equations.saddle import CORRECTED, FAILED, Saddle, inverted_pairs, saddle_space
 from core.multibody.laws.corners import until_corner
 from core.multibody.laws.kernel import PackedLaws, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread_pairs, started, summed_pairs

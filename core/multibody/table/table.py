@@ -262,14 +262,19 @@ class Table:
         new.q, new.v = [self.q[i] for i in fresh], [self.v[i] for i in fresh]
         slopes = [[(key[0], value) for key, value in expression.items() if key] for expression in expressions]
         offsets = [expression.get((), ZERO) for expression in expressions]
+        mass = new.mass
+        # Of a chain of n bodies these are of the order of n^3 terms.
         for (i, j), value in self.mass.items():
             for a, x in slopes[i]:
-                for b, y in slopes[j]:
-                    # The upper triangle stands for both sides: of a square each product is met twice and counts once.
-                    if i == j and b < a:
-                        continue
-                    term = value * x * y
-                    new.add_mass(a, b, 2 * term if i != j and a == b else term)
+                scaled = value * x
+                # The upper triangle stands for both sides: of a square each product is met twice and counts once.
+                for b, y in slopes[j] if i != j else [one for one in slopes[i] if one[0] >= a]:
+                    term = scaled * y
+                    if i != j and a == b:
+                        term = 2 * term
+                    at = (a, b) if a <= b else (b, a)
+                    old = mass.get(at)
+                    mass[at] = term if old is None else old + term
         for i, value in self.load.items():
             for a, x in slopes[i]:
                 new.add_load(a, value * x)
