@@ -137,6 +137,14 @@ def test_what_calls_a_changed_function_is_compiled_again_and_nothing_else(
     assert program.printed() == (numbers, hits)
 
 
+def test_what_is_loaded_can_be_inlined_again(tmp_path: Path) -> None:
+    """Its LLVM module was released when its machine code was loaded."""
+    program = TwoFiles(tmp_path)
+    program.printed()
+    program.file.write_text(CALLING.replace("double(double(x))", "double(double(double(x)))"))
+    assert program.printed() == ("1.5 12.0", 1)
+
+
 def test_in_another_directory_nothing_is_compiled_again(tmp_path: Path) -> None:
     program = TwoFiles(tmp_path)
     program.printed()
