@@ -10,7 +10,8 @@ from typing import Any, Literal
 import numpy as np
 
 from core.arrays import Floats
-from core.assessment.typed_entry import LONGEST_ENTRY, Locale, typed_entry
+from core.assessment.typed_entry import LONGEST_ENTRY, typed_entry
+from core.assessment.typed_number import Locale
 from core.errors import InvalidParameter
 from core.formulas import LONGEST_FORMULA
 
@@ -78,20 +79,24 @@ class Claim:
             return cls(None, unit, formula=formula)
         if "value" not in entry:
             raise InvalidParameter("value", "be given")
-        value = _value(entry["value"], "value")
+        return cls._of(_value(entry["value"], "value"), unit, entry, "value")
+
+    @classmethod
+    def _of(cls, value: Any, unit: str | None, entry: dict[str, Any], name: str) -> Claim:
+        """Return the claim of a value of the field `name`, with the times beside it if there are any."""
         if entry.get("times") is None:
             return cls(value, unit)
         times = _value(entry["times"], "times")
         if not isinstance(times, np.ndarray) or times.ndim != 1:
             raise InvalidParameter("times", "be an array of numbers")
         if not isinstance(value, np.ndarray) or len(value) != len(times):
-            raise InvalidParameter("value", f"have {len(times)} entries, one for each time")
+            raise InvalidParameter(name, f"have {len(times)} entries, one for each time")
         return cls(value, unit, times)
 
     @classmethod
     def _typed(cls, entry: dict[str, Any], unit: str | None, locale: Locale | None) -> Claim:
         """Return the claim of a text; a unit of its own takes precedence over the one beside it."""
-        for other in ("value", "formula", "times"):
+        for other in ("value", "formula"):
             if entry.get(other) is not None:
                 raise InvalidParameter(other, "be left out beside a text")
         text = _text(entry, "text", LONGEST_ENTRY) or ""
@@ -99,6 +104,8 @@ class Claim:
             typed = typed_entry(text, locale)
         except InvalidParameter as fault:
             raise fault.inside("text") from None
+        if entry.get("times") is not None:
+            return cls._of(_value(typed.value, "text"), typed.unit or unit, entry, "text")
         return cls(_value(typed.value, "text"), typed.unit or unit, formula=typed.formula, field="text")
 
 

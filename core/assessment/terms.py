@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from core.assessment.carried import CarriedStep
 from core.assessment.comparisons import Comparison
 from core.assessment.feedback.languages import Language
-from core.assessment.typed_entry import Locale
+from core.assessment.typed_number import Locale
 from core.errors import Path
 
 

@@ -1,41 +1,42 @@
-"""What somebody types into a field as an answer: a number with its unit, a formula, a list, or a word.
-
-Numbers are written in more ways than JSON has: ``6,28 s``, ``1 234,5``, ``3·10²``, ``−2.5e3 N``, ``30°``. A mark that
-could be read in two ways, such as the comma of ``1,234``, is refused unless a locale says what it is.
-"""
+"""What somebody types into a field as an answer: a number with its unit, a formula, a list, or a word."""
 
 from __future__ import annotations
 
 import json
 import re
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from core.assessment.feedback.entry_fault import EntryFault
 from core.assessment.feedback.languages import Sentence
-
-Locale = Literal["de", "en", "es", "fr"]
-_WITH_COMMA = ("de", "es", "fr")
-"""Locales whose decimal mark is the comma."""
+from core.assessment.typed_number import DIGITS, WITH_COMMA, Locale, leading_number, plain_digits
+from core.assessment.unit_words import in_symbols
 
 LONGEST_ENTRY = 300
 """Characters: as long as a formula may be."""
 
 _SIGNS = str.maketrans(
-    {"−": "-", "–": "-", "π": "pi", "\u00ba": "°"}
+    {"−": "-", "–": "-", "—": "-", "π": "pi", "\u00ba": "°"}
     | dict.fromkeys("\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f", " ")
 )
 """Signs with other code points than those of formulas; the masculine ordinal is typed for the degree sign."""
-_OPERATORS = str.maketrans({"×": "*", "⋅": "*", "·": "*", "÷": "/"})
+_OPERATORS = str.maketrans({"×": "*", "⋅": "*", "·": "*", "÷": "/", "√": "sqrt"})
 """Signs that mean something else in formulas only: a unit may have its dots."""
 _RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
-_TEN = r"10\s*(?:\^|\*\*)\s*\(?\s*([-+]?\d{1,4})\s*\)?"
-_DIGITS = r"(?:\d[\d.,]*(?:[ '’]\d{3}(?!\d)[\d.,]*)*|[.,]\d+)"
-_NUMBER = re.compile(rf"([-+]?)\s*({_DIGITS})(?:[eE]([-+]?\d{{1,4}})(?!\d)|\s*[*xX×⋅·]\s*{_TEN})?")
-_POWER_OF_TEN = re.compile(rf"([-+]?)\s*{_TEN}")
-_IN_FORMULA = re.compile(rf"(?<![\w.,]){_DIGITS}")
+_NAMED = re.compile(r"(?:[^\W\d]\w*)?\s*[=≈~]\s*")
+"""What stands before the answer itself: ``T = 6.28 s``."""
+_IN_FORMULA = re.compile(rf"(?<![\w.,]){DIGITS}")
 _WITH_UNIT = re.compile(r"(.*[\w)])\s+([A-Za-z°µμΩ%][\w°µμΩ%²³⁻¹*/^() .-]*)", re.DOTALL)
-_WORDS: dict[str, bool | None] = {"true": True, "false": False, "null": None}
+_GOES_ON = re.compile(r"[-+*/^(×⋅·÷√]|pi\b|sqrt\b|(?!1\s*/\s*[^\W\d])\d|.*\+", re.DOTALL)
+"""What follows a number that is the beginning of a formula; ``2.5 1/s`` has a unit, which has no sum."""
+_UNIT = re.compile(r"[\w°%µμΩ·*/^()²³⁻¹. -]*")
+_PRODUCT = str.maketrans({"⋅": "·", "×": "·"})
+_SEPARATOR = re.compile(r"[;|]|,\s")
+_WORDS: dict[str, bool | None] = {
+    "null": None,
+    **dict.fromkeys(("true", "yes", "wahr", "ja", "vrai", "oui", "verdadero", "sí"), True),
+    **dict.fromkeys(("false", "no", "falsch", "nein", "faux", "non", "falso"), False),
+}
 
 
 @dataclass(frozen=True)
@@ -68,48 +69,58 @@ def typed_entry(text: str, locale: Locale | None = None) -> TypedEntry:
     Raises
     ------
     EntryFault
-        For an empty entry, and for a number that can be read in two ways, with both in the remedy.
+        For an empty entry, and for one that can be read in two ways or in none.
     """
     entry = re.sub(r"(?<=10)[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda raised: f"^{raised[0].translate(_RAISED)}", text)
     entry = entry.translate(_SIGNS).strip()
+    if named := _NAMED.match(entry):
+        entry = entry[named.end() :]
     if not entry:
         raise EntryFault((), "not be empty", sentence=Sentence("entry-empty"))
     if entry.lower() in _WORDS:
         return TypedEntry(_WORDS[entry.lower()])
-    if entry.startswith("["):
-        return TypedEntry(*_listed(entry, locale))
-    number = _leading_number(entry, locale)
+    if entry.startswith(("[", "{")) or ";" in entry or _is_list_in_parentheses(entry):
+        values, behind = _listed(entry, locale)
+        return TypedEntry(values, _symbols(behind, locale))
+    number = leading_number(entry, locale)
     if number is not None:
         value, rest = number
-        if not re.match(r"[-+*/^(×⋅·÷]|pi\b|\d", rest):
-            return TypedEntry(value, rest or None)
-    formula, unit = entry, None
+        if not _GOES_ON.match(rest):
+            return TypedEntry(value, _symbols(rest, locale))
+    formula, unit = entry, ""
     split = _WITH_UNIT.fullmatch(entry)
     if split is not None and not re.search(r"[-+*/^(]\s*$", split[1]):
         formula, unit = split[1], split[2].strip()
-    formula = re.sub(r"(?<=\d)\s*(?=pi\b)", "*", formula.translate(_OPERATORS))
-    formula = _IN_FORMULA.sub(lambda digits: _plain(digits[0], locale), formula)
-    return TypedEntry(entry if re.fullmatch(r"[A-Za-z][\w -]*", entry) else None, unit, formula)
+    formula = re.sub(r"√\s*([\d.,]+|[^\W\d]\w*)", r"sqrt(\1)", formula).translate(_OPERATORS)
+    formula = re.sub(r"(?<=\d)\s*(?=(?:pi|sqrt)\b)", "*", formula)
+    formula = _IN_FORMULA.sub(lambda digits: plain_digits(digits[0], locale), formula)
+    word = entry if re.fullmatch(r"[A-Za-z][\w -]*", entry) else None
+    return TypedEntry(word, _symbols(unit, locale), formula)
 
 
-def _leading_number(entry: str, locale: Locale | None) -> tuple[float, str] | None:
-    """Return the number with which an entry begins, and what is left of the entry; None if it begins with none."""
-    power = _POWER_OF_TEN.match(entry)
-    if power is not None:
-        sign, exponent = power.groups()
-        return float(f"{sign}1e{exponent}"), entry[power.end() :].strip()
-    found = _NUMBER.match(entry)
-    if found is None:
-        return None
-    sign, digits, exponent, of_ten = found.groups()
-    return float(f"{sign}{_plain(digits, locale)}e{exponent or of_ten or 0}"), entry[found.end() :].strip()
+def _symbols(unit: str, locale: Locale | None) -> str | None:
+    """Return a unit in symbols, None where there is none; brackets around it are left out."""
+    unit = unit.translate(_PRODUCT)
+    if unit.startswith("[") and unit.endswith("]"):
+        unit = unit[1:-1].strip()
+    if not _UNIT.fullmatch(unit):
+        rule = "be one number with its unit, a formula, a list or a word"
+        raise EntryFault((), rule, sentence=Sentence("entry-malformed"))
+    return in_symbols(unit, locale) or None
 
 
-def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str | None]:
+def _is_list_in_parentheses(entry: str) -> bool:
+    """Return whether parentheses hold numbers with separators that no formula has."""
+    inside = re.match(r"\(([^()]*)\)", entry)
+    return inside is not None and _SEPARATOR.search(inside[1]) is not None
+
+
+def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str]:
     """Return a list of numbers or of such lists, and the unit behind it."""
-    end = entry.rfind("]") + 1
-    inside, unit = entry[:end], entry[end:].strip() or None
-    if ";" not in inside:
+    end = max(map(entry.rfind, "])}")) + 1 if entry[0] in "[({" else len(entry)
+    inside, unit = entry[:end], entry[end:].strip()
+    with_commas = locale in WITH_COMMA and re.search(r"\d,\d.*,\s|,\s.*\d,\d", inside)
+    if inside.startswith("[") and not with_commas and not re.search("[;|]", inside):
         try:
             read = json.loads(inside)
         except (ValueError, RecursionError):
@@ -118,53 +129,12 @@ def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str | None]:
             return read, unit
         remedy = "with decimal commas: [1,5; 2; 3]"
         raise EntryFault((), "be a list such as [1.5, 2, 3]", remedy=remedy, sentence=Sentence("list-malformed"))
-    found = []
-    for part in inside.strip("[]").split(";"):
-        number = _leading_number(part.strip(), locale)
-        if number is None or number[1]:
-            sentence = Sentence("list-malformed")
-            raise EntryFault((), "be a list of numbers such as [1,5; 2; 3]", sentence=sentence)
-        found.append(number[0])
-    return found, unit
-
-
-def _plain(digits: str, locale: Locale | None) -> str:
-    """Return digits with a point as their decimal mark and nothing between groups of three."""
-    digits = re.sub(r"[ '’]", "", digits)
-    points, commas = digits.count("."), digits.count(",")
-    if not points + commas:
-        return digits
-    last = max(digits, key=lambda mark: digits.rfind(mark) if mark in ".," else -1)
-    whole, _, part = digits.rpartition(last)
-    if points + commas > 1:
-        other = "," if last == "." else "."
-        decimal = digits.count(last) == 1
-        groups = (whole if decimal else digits).split(other if decimal else last)
-        if not _grouped(groups):
-            rule = "be a number with one decimal mark, and groups of three digits if any"
-            raise EntryFault((), rule, sentence=Sentence("number-malformed"))
-        return "".join(groups) + (f".{part}" if decimal else "")
-    if _grouped([whole, part]) and not _is_decimal(last, locale):
-        if last == "," and locale == "en":
-            return whole + part
-        readings = {"digits": digits, "whole": whole + part, "decimal": f"{whole}.{part}", "padded": f"{digits}0"}
-        raise EntryFault(
-            (),
-            f"be a number that can be read in one way: {digits} may be {whole}{part} or {whole}.{part}",
-            remedy=f"write {whole}{part} or {digits}0",
-            sentence=Sentence("number-ambiguous", readings),
-        )
-    return f"{whole}.{part}"
-
-
-def _grouped(groups: list[str]) -> bool:
-    """Return whether digits may be groups of three."""
-    first, *rest = groups
-    return 1 <= len(first) <= 3 and first[0] != "0" and all(len(group) == 3 for group in rest)
-
-
-def _is_decimal(mark: str, locale: Locale | None) -> bool:
-    """Return whether a mark before three digits is the decimal one."""
-    if mark == ".":
-        return locale not in _WITH_COMMA
-    return locale in _WITH_COMMA
+    parts = re.split("[;|]" if re.search("[;|]", inside) else r",\s", inside.strip("[](){}"))
+    found = [leading_number(part.strip(), locale) or (0.0, "none") for part in parts]
+    if not unit and end == len(entry) and entry[0] not in "[({":
+        # Without brackets the unit follows the last number.
+        unit = found[-1][1]
+        found[-1] = found[-1][0], ""
+    if any(rest for _, rest in found):
+        raise EntryFault((), "be a list of numbers such as [1,5; 2; 3]", sentence=Sentence("list-malformed"))
+    return [value for value, _ in found], unit

@@ -40,9 +40,11 @@ RULES: Mapping[str, str] = {
 _PLAIN = re.compile(r"[\w°%µμ·*/^()²³⁻¹. +-]+")
 _POWER = re.compile(r"(?<=[\w)°%µμ])\s*(?:\^|\*\*)\s*(?:-?[1-9]|\(-?[1-9]\))(?!\s*(?:\d|\.|\^|\*\*))")
 _NUMBER = re.compile(r"(?<![A-Za-z_])\d")
-_IN_FULL = re.compile(r"[A-Z][a-z]{3,}")
+_IN_FULL = re.compile(r"(?!Grad\b)[A-Z][a-z]{3,}")
 _MILLISECOND = re.compile(r"(?<![A-Za-z])ms(?![A-Za-z])")
 _RECIPROCAL = re.compile(r"\s*1\s*/")
+_RAISED = re.compile(r"(?<=[^\W\d_])(-?[1-9])(?!\d)")
+_RUN_TOGETHER = re.compile(r"(?<![^\W_])([kMm]?N|J|kg)(mm|cm|m)?(s)?(?![^\W\d_])")
 _FACTOR = re.compile(r"([*/]?)([A-Za-z]+)(?:\^(-?\d))?")
 _DERIVED = {
     "N": {"kg": 1, "m": 1, "s": -2},
@@ -72,11 +74,18 @@ def factor(given: str, unit: str) -> float:
         return 1.0
     if len(given) > LONGEST_UNIT:
         raise EntryFault("unit", f"have at most {LONGEST_UNIT} characters", sentence=Sentence(MALFORMED))
-    found = _factor(given, unit)
+    found = _factor(_with_signs(given), unit)
     if isinstance(found, float):
         return found
     key, remedy = found
     raise EntryFault("unit", RULES[key], remedy=remedy, sentence=Sentence(key))
+
+
+def _with_signs(given: str) -> str:
+    """Return a unit with the signs that are left out of ``m2``, ``s-1``, ``Nm`` (pint's nautical mile) and ``kgm``."""
+    given = given.translate(_SUPERSCRIPTS)
+    given = _RUN_TOGETHER.sub(lambda found: "*".join(filter(None, found.groups())), given)
+    return _RAISED.sub(r"^\1", given)
 
 
 @lru_cache(4096)
@@ -129,7 +138,10 @@ def _registry() -> Any:
 
 
 def _parsed(registry: Any, given: str) -> Any:
-    """Return a unit; names in full may begin with a capital letter, as some of those do after whom they are called."""
+    """Return a unit; names in full may begin with a capital letter, as some of those do after whom they are called.
+
+    Grad is left out: it is the German degree, and pint's grad the gon.
+    """
     try:
         return registry.parse_units(given)
     except Exception:

@@ -1,4 +1,4 @@
-"""An exam of 40 answers as students type them, in three locales, with the verdict of each decided by hand.
+"""An exam of 60 answers as students type them, in four locales, with the verdict of each decided by hand.
 
 The references are closed forms: the coin of moments 1, 1, 2 and angular velocity (1, 1, 1) has the body rate
 (2 - 1)/1 x 1 = 1 rad/s, the period 2 pi s and the angle atan(sqrt(2)/2) = 35.264 degrees to its angular momentum; a
@@ -9,11 +9,11 @@ with sqrt(2 g k (1 - 1/2)/(1 - 1/6)), k = sqrt(3)/2, which is 3.1929 rad/s.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
-from core.assessment.typed_entry import Locale
+from core.assessment.typed_number import Locale
 from core.errors import InvalidParameter, pointer_of
 from tests.service.test_assessments import COIN, ROD, handled
 
@@ -55,6 +55,14 @@ EXAM: list[tuple[Locale, Any, str, Any, str]] = [
     ("de", ATWOOD, TENSION, "-2*minus_g*m*M/(m + M)", RIGHT),
     ("de", ATWOOD, TENSION, "-minus_g*m*M/(m + M)", WRONG),
     ("de", ATWOOD, TENSION, "2*g*m*M/(m + M)", UNREADABLE),
+    ("de", COIN, "/period", "T = 6,28 Sekunden", RIGHT),
+    ("de", COIN, CONE, "35,26 Grad", RIGHT),
+    ("de", COIN, CONE, "35° 16′", RIGHT),
+    ("de", COIN, "/body_rate", "57,3 Grad/s", RIGHT),
+    ("de", COIN, "/body_rate", "9,549 U/min", RIGHT),
+    ("de", COIN, "/tumbles", "nein", RIGHT),
+    ("de", CUBOID, MOMENTS, "(2,5; 5; 6,5) kgm²", RIGHT),
+    ("de", ATWOOD, IN_TIME, {"text": "[14,7; 14,7; 14,7] N", "times": [0.0, 0.1, 0.2]}, RIGHT),
     # Britain and the United States
     ("en", COIN, "/period", "6.28 s", RIGHT),
     ("en", COIN, "/period", "6,283 ms", RIGHT),
@@ -70,6 +78,10 @@ EXAM: list[tuple[Locale, Any, str, Any, str]] = [
     ("en", ROD, HORIZONTAL, "sqrt(2*gravity*sqrt(3)/2*(1 - 1/2)/(1 - 1/6)) rad/s", WRONG),
     ("en", CUBOID, MOMENTS, "[2.5, 5, 6.5] kg m^2", RIGHT),
     ("en", CUBOID, MOMENTS, "[2.5, 5, 6.0] kg m^2", WRONG),
+    ("en", CUBOID, MOMENTS, "(2.5, 5, 6.5) kg m2", RIGHT),
+    ("en", COIN, CONE, "atan(1/√2)", RIGHT),
+    ("en", COIN, "/period", "6.28 ± 0.01 s", UNREADABLE),
+    ("en", ATWOOD, TENSION, "-2 m M minus_g/(m + M)", UNREADABLE),
     # France
     ("fr", CUBOID, MOMENTS, "[2,5; 5; 6,5] kg·m²", RIGHT),
     ("fr", CUBOID, MOMENTS, "[5; 10; 13] kg·m²", WRONG),
@@ -80,6 +92,15 @@ EXAM: list[tuple[Locale, Any, str, Any, str]] = [
     ("fr", ATWOOD, IN_TIME, {"value": [14.7, 14.7, 14.7], "times": [0.0, 0.1, 0.2], "unit": "N"}, RIGHT),
     ("fr", ATWOOD, IN_TIME, {"value": [9.81, 9.81, 9.81], "times": [0.0, 0.1, 0.2], "unit": "N"}, WRONG),
     ("fr", ATWOOD, IN_TIME, {"value": [14.7, 14.7], "times": [0.0, 0.1, 0.2], "unit": "N"}, UNREADABLE),
+    ("fr", COIN, "/body_rate", "9,549 tr/min", RIGHT),
+    ("fr", COIN, "/body_rate", "1 rad.s-1", RIGHT),
+    ("fr", COIN, "/tumbles", "oui", WRONG),
+    # Spain
+    ("es", COIN, "/period", "T = 6,28 segundos", RIGHT),
+    ("es", COIN, CONE, "35,26 grados", RIGHT),
+    ("es", COIN, "/body_rate", "9,549 vueltas por minuto", RIGHT),
+    ("es", ATWOOD, TENSION, "14.715 N", UNREADABLE),
+    ("es", ATWOOD, TENSION, "1.471,5 cN", RIGHT),
 ]
 
 
@@ -95,10 +116,10 @@ def test_every_answer_has_the_verdict_of_the_examiner(
     assert (result["score"] == 1.0) == (verdict == RIGHT)
 
 
-def test_the_exam_has_forty_answers_in_three_locales_right_and_wrong() -> None:
-    assert len(EXAM) == 40
-    assert {entry[0] for entry in EXAM} == {"de", "en", "fr"}
-    assert 15 < sum(entry[-1] == RIGHT for entry in EXAM) < 25
+def test_the_exam_has_answers_in_every_locale_right_and_wrong() -> None:
+    assert len(EXAM) == 60
+    assert {entry[0] for entry in EXAM} == set(get_args(Locale))
+    assert 25 < sum(entry[-1] == RIGHT for entry in EXAM) < 45
 
 
 @pytest.mark.parametrize(

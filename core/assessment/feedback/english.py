@@ -24,6 +24,7 @@ ENGLISH: Mapping[str, str] = {
     "unit-size": "This unit is too large or too small.",
     # Entries that cannot be read
     "entry-empty": "The answer is empty.",
+    "entry-malformed": "Write one number with its unit, such as 6.28 s.",
     "number-ambiguous": "{digits} can mean {whole} or {decimal}. Write {whole} or {padded}.",
     "number-malformed": "Write the number with one decimal mark and, if you separate thousands, groups of three "
     "digits.",

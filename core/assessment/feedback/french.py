@@ -25,6 +25,7 @@ FRENCH: Mapping[str, str] = {
     "unit-size": "Cette unité est trop grande ou trop petite.",
     # Entries that cannot be read
     "entry-empty": "La réponse est vide.",
+    "entry-malformed": "Écrivez un nombre avec son unité, par exemple 6,28 s.",
     "number-ambiguous": "{digits} peut signifier {whole} ou {decimal}. Écrivez {whole} ou {padded}.",
     "number-malformed": "Écrivez le nombre avec un seul séparateur décimal et, si vous séparez les milliers, par "
     "groupes de trois chiffres.",

@@ -26,6 +26,7 @@ GERMAN: Mapping[str, str] = {
     "unit-size": "Diese Einheit ist zu groß oder zu klein.",
     # Entries that cannot be read
     "entry-empty": "Die Eingabe ist leer.",
+    "entry-malformed": "Schreiben Sie eine Zahl mit ihrer Einheit, zum Beispiel 6,28 s.",
     "number-ambiguous": "{digits} kann {whole} oder {decimal} bedeuten. Schreiben Sie {whole} oder {padded}.",
     "number-malformed": "Schreiben Sie die Zahl mit einem Dezimalzeichen und, falls Sie Tausender trennen, in "
     "Dreiergruppen.",

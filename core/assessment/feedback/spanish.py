@@ -25,6 +25,7 @@ SPANISH: Mapping[str, str] = {
     "unit-size": "Esta unidad es demasiado grande o demasiado pequeña.",
     # Entries that cannot be read
     "entry-empty": "La respuesta está vacía.",
+    "entry-malformed": "Escriba un número con su unidad, por ejemplo 6,28 s.",
     "number-ambiguous": "{digits} puede significar {whole} o {decimal}. Escriba {whole} o {padded}.",
     "number-malformed": "Escriba el número con un solo separador decimal y, si separa los millares, en grupos de "
     "tres cifras.",

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.assessment.claims import Claim
-from core.assessment.typed_entry import Locale, TypedEntry, typed_entry
+from core.assessment.typed_entry import TypedEntry, typed_entry
+from core.assessment.typed_number import Locale
 from core.errors import InvalidParameter
 
 
@@ -39,7 +40,20 @@ from core.errors import InvalidParameter
         ("9,81 m/s\u00b2", 9.81, "m/s\u00b2"),
         ("[1,2,3] m", [1, 2, 3], "m"),
         ("[1,5; 2; -3,25]", [1.5, 2.0, -3.25], None),
+        ("(1.5, 2) m", [1.5, 2.0], "m"),
+        ("{1,5; 2} m", [1.5, 2.0], "m"),
+        ("1,5; 2; 3 kg m", [1.5, 2.0, 3.0], "kg m"),
+        ("(1,5 | 2)", [1.5, 2.0], None),
+        ("T = 6,28 s", 6.28, "s"),
+        ("\u2248 6,28 s", 6.28, "s"),
+        ("6,28 [s]", 6.28, "s"),
+        ("2 kg\u22c5m\u00b2", 2.0, "kg\u00b7m\u00b2"),
+        ("9,5 1/min", 9.5, "1/min"),
+        ("-30\u00b0 15\u2032", -30.25, "\u00b0"),
+        ("30\u00b0 15' 36''", 30.26, "\u00b0"),
+        ("30\u00b0 15'/s", 30.25, "\u00b0/s"),
         ("TRUE", True, None),
+        ("nein", False, None),
         ("null", None, None),
     ],
 )
@@ -55,6 +69,10 @@ def test_values_with_units(text: str, value: Any, unit: str | None) -> None:
         ("M*g\u00b7sin(alpha)/3", "M*g*sin(alpha)/3", None),
         ("2,5*m*g", "2.5*m*g", None),
         ("sqrt(2) m/s", "sqrt(2)", "m/s"),
+        ("2\u221a3 m", "2*sqrt(3)", "m"),
+        ("\u221a(2,5/k)", "sqrt(2.5/k)", None),
+        ("v = (m + M)*g", "(m + M)*g", None),
+        ("(2,5)*m", "(2.5)*m", None),
     ],
 )
 def test_formulas(text: str, formula: str, unit: str | None) -> None:
@@ -89,6 +107,10 @@ def test_a_locale_decides_what_a_comma_is(text: str, locale: Locale, value: floa
         ("1,23,456", None),
         ("1,5,5", "de"),
         ("  ", None),
+        ("T =", None),
+        ("6,28 ± 0,01 s", None),
+        ("1,5; 2 m; 3", None),
+        ("(1, x)", None),
     ],
 )
 def test_what_can_be_read_in_two_ways_or_in_none_is_refused(text: str, locale: Locale | None) -> None:
@@ -141,7 +163,20 @@ def test_a_unit_of_its_own_takes_precedence() -> None:
     assert Claim.read({"text": "6,28", "unit": "min"}).unit == "min"
 
 
-@pytest.mark.parametrize("other", [{"value": 1}, {"formula": "x"}, {"times": [0]}])
+def test_commas_before_spaces_separate_where_the_comma_is_decimal() -> None:
+    assert typed_entry("[1,5, 2, 3,25] m", "de") == TypedEntry([1.5, 2.0, 3.25], "m")
+    assert typed_entry("[1, 2, 3] m", "de") == TypedEntry([1, 2, 3], "m")
+
+
+def test_a_list_may_have_times_beside_it() -> None:
+    claim = Claim.read({"text": "[1,5; 2] N", "times": [0.0, 1.0]}, "de")
+    assert claim.times is not None
+    assert (claim.value.tolist(), claim.unit, claim.times.tolist()) == ([1.5, 2.0], "N", [0.0, 1.0])
+    with pytest.raises(InvalidParameter, match="3 entries, one for each time"):
+        Claim.read({"text": "[1,5; 2] N", "times": [0.0, 1.0, 2.0]}, "de")
+
+
+@pytest.mark.parametrize("other", [{"value": 1}, {"formula": "x"}])
 def test_a_text_stands_alone(other: dict[str, Any]) -> None:
     with pytest.raises(InvalidParameter, match="beside a text"):
         Claim.read({"text": "1", **other})

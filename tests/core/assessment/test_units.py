@@ -69,6 +69,27 @@ def test_units_of_other_quantities_are_wrong(given_unit: str, unit: str) -> None
         factor(given_unit, unit)
 
 
+@pytest.mark.parametrize(
+    ("given_unit", "unit", "value"),
+    [
+        ("Nm", "J", 1.0),
+        ("kNm", "N m", 1e3),
+        ("Ncm", "N m", 1e-2),
+        ("Nm/rad", "N m", 1.0),
+        ("Ns", "N s", 1.0),
+        ("kgm²", "kg m^2", 1.0),
+        ("kgm2/s2", "J", 1.0),
+        ("g cm2", "kg m^2", 1e-7),
+        ("rad.s-1", "rad s^-1", 1.0),
+        ("deg s⁻¹", "rad s^-1", math.pi / 180.0),
+        ("mN", "N", 1e-3),
+        ("kg", "kg", 1.0),
+    ],
+)
+def test_signs_between_symbols_and_powers_may_be_left_out(given_unit: str, unit: str, value: float) -> None:
+    assert factor(given_unit, unit) == pytest.approx(value, rel=1e-15)
+
+
 def test_metres_per_second_written_as_milliseconds_are_said_to_be() -> None:
     with pytest.raises(InvalidParameter) as fault:
         factor("ms^-2", "m s^-2")

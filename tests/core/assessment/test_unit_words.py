@@ -1,0 +1,68 @@
+"""Units in words: every symbol of the table is the unit that it should be, and nothing else of a unit changes."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.assessment.typed_number import Locale
+from core.assessment.unit_words import WORDS, in_symbols
+from core.assessment.units import factor
+from core.errors import InvalidParameter
+
+MEASURED = {
+    "s": ("s", 1.0),
+    "min": ("s", 60.0),
+    "h": ("s", 3600.0),
+    "d": ("s", 86400.0),
+    "mm": ("m", 1e-3),
+    "cm": ("m", 1e-2),
+    "m": ("m", 1.0),
+    "km": ("m", 1e3),
+    "g": ("kg", 1e-3),
+    "kg": ("kg", 1.0),
+    "t": ("kg", 1e3),
+    "rad": ("rad", 1.0),
+    "deg": ("rad", 0.017453292519943295),
+    "gon": ("rad", 0.015707963267948967),
+    "turn": ("rad", 6.283185307179586),
+    "J": ("J", 1.0),
+}
+"""Values of the symbols in units of the International System, of which all but the gon are in its brochure (9th
+edition, tables 2 to 8); the gon is a four-hundredth of a turn."""
+
+
+def test_every_symbol_is_the_unit_that_it_should_be() -> None:
+    symbols = {symbol for words in WORDS.values() for symbol in words.values()}
+    assert symbols == {*MEASURED, "/"}
+    for symbol, (unit, value) in MEASURED.items():
+        assert factor(symbol, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("written", "locale", "symbols"),
+    [
+        ("Sekunden", "de", "s"),
+        ("Sek.", "de", "s"),
+        ("Grad/s", "de", "deg/s"),
+        ("grad", "de", "deg"),
+        ("U/min", "de", "turn/min"),
+        ("u", "de", "u"),
+        ("Meter pro Sekunde", "de", "Meter / s"),
+        ("grades", "fr", "gon"),
+        ("mètres par seconde", "fr", "m / s"),
+        ("tr/min", "fr", "turn/min"),
+        ("vueltas por minuto", "es", "turn / min"),
+        ("kg·m²", "de", "kg·m²"),
+        ("rad.s-1", "fr", "rad.s-1"),
+        ("grad", "en", "grad"),
+        ("deg", None, "deg"),
+    ],
+)
+def test_words_become_symbols(written: str, locale: Locale | None, symbols: str) -> None:
+    assert in_symbols(written, locale) == symbols
+
+
+@pytest.mark.parametrize("written", ["grad", "Grad", "Grad/s"])
+def test_a_word_for_two_units_needs_a_locale(written: str) -> None:
+    with pytest.raises(InvalidParameter, match="a degree or a gon"):
+        in_symbols(written, None)
