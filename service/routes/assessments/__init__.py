@@ -20,7 +20,7 @@ from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, Grader, cre
 from core.assessment.propagation import numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
 from core.assessment.terms import Terms
-from core.assessment.typed_entry import Locale
+from core.assessment.typed_number import Locale
 from core.errors import InvalidParameter, Path, inside_field
 from core.formulas import is_name
 from core.multibody.language.numerals import member
