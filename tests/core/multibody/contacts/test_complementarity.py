@@ -398,4 +398,5 @@ def test_a_level_bar_that_lands_on_a_rough_floor_comes_to_rest_on_both_ends(x: s
     place = column(answer, "bar.position")
     expected = 0.5 * fall + slides**2 / (2 * 0.2 * 9.81)
     assert np.asarray(place.values)[0] - [float(x), 0.2] == pytest.approx([expected, 0.0], abs=place.error + 1e-16)
-    assert column(answer, "bar.angular_velocity").values[0] == 0.0
+    turning = column(answer, "bar.angular_velocity")
+    assert abs(turning.values[0]) <= turning.error < 1e-14
