@@ -10,7 +10,8 @@ References
 ----------
 P. Ballard, "The dynamics of discrete mechanical systems with perfect unilateral constraints", Archive for Rational
 Mechanics and Analysis 154 (2000). R. W. Cottle, J.-S. Pang, R. E. Stone, "The Linear Complementarity Problem" (1992),
-chapters 3 and 5.
+chapters 3 and 5. S. Mehrotra, "On the implementation of a primal-dual interior point method", SIAM Journal on
+Optimization 2 (1992).
 """
 
 from __future__ import annotations
@@ -32,11 +33,17 @@ from core.multibody.contacts.contact_states import Problem, State
 from core.multibody.table.connection_effects import Unilateral
 
 _STEPS = 60
-"""Steps of the interior-point method: each takes nine tenths of what is left, near the end all but nothing."""
-_ENDED = 1e-16
-"""Mean product of force and acceleration, both of the size one, at which it ends."""
+"""Steps of the interior-point method, three times as many as it takes: 21 at most over 3,000 problems of 24 contacts."""
+_ENDED = 1e-14
+"""Mean product of force and acceleration, both of the size one, at which it ends: above the rounding of products."""
 _NOTHING = 1e-5
-"""Share of the largest force, or acceleration, below which one is nothing: those that are both zero are some 1e-8."""
+"""Share of the largest force, or acceleration, below which one is nothing: those that are both zero are some 1e-7."""
+_YIELD = 1e-12
+"""How far a contact gives way to a force of the size one. Contacts that press against one another with nothing else to
+hold, such as the sides of a shaft, then push with some force instead of any force, and no step is singular: the
+yielding stands far above rounding, and what it adds to accelerations far below what is nothing."""
+_REACH = 0.99
+"""Share of the way to the border of positive forces and accelerations that a step takes at most."""
 _MOST_TRIED = 256
 """Combinations of states that are tried of contacts that neither push nor open."""
 
@@ -58,7 +65,7 @@ def complementary(matrix: Floats, start: Floats) -> tuple[Floats, Floats]:
     """
     sizes = np.sqrt(np.clip(matrix.diagonal(), 0.0, None))
     sizes[sizes == 0.0] = 1.0
-    scaled, free = matrix / np.outer(sizes, sizes), start / sizes
+    scaled, free = matrix / np.outer(sizes, sizes) + _YIELD * np.eye(len(start)), start / sizes
     free = free / (np.abs(free).max() or 1.0)
     forces, gains = np.ones(len(free)), np.ones(len(free))
     for _ in range(_STEPS):
@@ -66,13 +73,22 @@ def complementary(matrix: Floats, start: Floats) -> tuple[Floats, Floats]:
         mean = float(forces @ gains) / len(free)
         if mean < _ENDED and np.abs(rest).max() < _ENDED**0.5:
             break
-        target = 0.1 * mean
-        step = np.linalg.solve(np.diag(gains) + forces[:, None] * scaled, target - forces * gains - forces * rest)
+        slopes, missed = np.diag(gains) + forces[:, None] * scaled, forces * (gains + rest)
+        # Mehrotra's predictor and corrector: how far a step to the border comes says how far to aim within it.
+        step = np.linalg.solve(slopes, -missed)
         change = scaled @ step + rest
-        reach = max(float((-step / forces).max()), float((-change / gains).max()), 0.0)
-        share = min(1.0, 0.99 / reach) if reach > 0.0 else 1.0
-        forces, gains = forces + share * step, gains + share * change
+        reach = _reach(forces, gains, step, change)
+        ahead = float((forces + reach * step) @ (gains + reach * change)) / len(free)
+        step = np.linalg.solve(slopes, ahead**3 / mean**2 - step * change - missed)
+        change = scaled @ step + rest
+        reach = _reach(forces, gains, step, change)
+        forces, gains = forces + reach * step, gains + reach * change
     return _without_nothing(forces) / sizes, _without_nothing(gains) * sizes
+
+
+def _reach(forces: Floats, gains: Floats, step: Floats, change: Floats) -> float:
+    """Return the share of a step that keeps forces and accelerations above zero, one at most."""
+    return _REACH / max(_REACH, float((-step / forces).max()), float((-change / gains).max()))
 
 
 def _without_nothing(values: Floats) -> Floats:

@@ -146,13 +146,8 @@ class Table:
     timed: set[int] = field(default_factory=set)
 
     def independent_rows(self) -> list[int]:
-        """Return the numbers of rows on which all others depend at the start, in order.
-
-        Rows whose lines are the same everywhere come first: what they leave to others they leave along the whole
-        motion, whereas rows that turn with it may come to depend on one another.
-        """
-        order = sorted(range(len(self.rows)), key=lambda r: not self.rows[r].constant)
-        return sorted(order[k] for k in independent(self.rows[r].line(self.q) for r in order))
+        """Return the numbers of rows on which all others depend at the start, in order."""
+        return independent(row.line(self.q) for row in self.rows)
 
     def coordinate(self, name: str, unit: str, value: Ball) -> int:
         """Add a coordinate and return its number."""

@@ -30,6 +30,21 @@ def test_forces_are_those_of_least_constraint(seed: int) -> None:
     assert gains[gains > 0] / gains.max() == pytest.approx(expected[gains > 0] / expected.max(), abs=1e-6)
 
 
+@pytest.mark.parametrize("states", [2, 3])
+def test_which_push_and_which_open_is_that_of_planted_problems(states: int) -> None:
+    """Accelerations are unique, whatever forces press redundant contacts, or those of a shaft, against one another."""
+    random = np.random.default_rng(states)
+    for _ in range(300):
+        count = int(random.integers(1, 25))
+        rows = random.integers(-2, 3, (count, int(random.integers(1, count + 1)))) * (random.random((count, 1)) < 0.7)
+        state = random.integers(0, states, count)
+        push, gain = ((state == k) * (random.random(count) + 0.1) for k in (0, 1))
+        forces, gains = complementary((rows @ rows.T).astype(float), gain - rows @ rows.T @ push)
+        assert ((gains > 0) == (gain > 0)).all()
+        assert not ((forces > 0) & (gain > 0)).any()
+        assert ((forces > 0) >= (push > 0)).all()
+
+
 def test_what_neither_pushes_nor_opens_is_told() -> None:
     """Beads in free fall."""
     matrix = 2 * np.eye(9) - np.eye(9, k=1) - np.eye(9, k=-1)
