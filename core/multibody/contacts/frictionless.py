@@ -33,7 +33,7 @@ from core.multibody.contacts.contact_states import Problem, State
 from core.multibody.table.connection_effects import Unilateral
 
 _STEPS = 60
-"""Steps of the interior-point method, three times as many as it takes: 21 at most over 3,000 problems of 24 contacts."""
+"""Steps of the interior-point method, three times as many as it takes: 21 at most over 3,000 problems of 24."""
 _ENDED = 1e-14
 """Mean product of force and acceleration, both of the size one, at which it ends: above the rounding of products."""
 _NOTHING = 1e-5
