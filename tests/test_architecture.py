@@ -61,7 +61,7 @@ SERVICE_LAYERS = (
 
 
 MULTIBODY_LAYERS = (
-    {"__init__", "algebra", "undecided", "model_answer"},
+    {"__init__", "algebra", "undecided", "model_answer", "equations_answer"},
     {"language", "answer"},
     {"laws"},
     {"table", "audit"},
@@ -70,6 +70,7 @@ MULTIBODY_LAYERS = (
     {"contacts", "motion"},
     {"search"},
     {"trajectory", "statics", "start"},
+    {"formulation"},
     {"phases"},
     {"parts"},
     {"proven"},
@@ -315,6 +316,13 @@ TESTED_IN |= {
             "audit/formula_definitions audit/formula_forces audit/formulas language/motion_formulas laws/kernel "
             "laws/law laws/linear laws/samples laws/series laws/tape table/formula_laws"
         ),
+        "formulation/test_scene_equations": (
+            "equations_answer formulation/chart formulation/closed_forms formulation/constants formulation/euler "
+            "formulation/formula_nodes formulation/lagrange formulation/law_forces formulation/linear_equations "
+            "formulation/sides formulation/symbols"
+        ),
+        "formulation/notation/test_notations": "formulation/notation/latex formulation/notation/mathml "
+        "formulation/notation/names formulation/notation/plain",
         "table/test_formulas_of_time": "audit/driven table/moving_places",
         "laws/test_formulas_of_pieces": (
             "equations/starting_pieces laws/corners language/switches phases/formula_ends table/law_pieces"

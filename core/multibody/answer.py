@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated
 
+from core.multibody.equations_answer import SceneEquations
 from core.multibody.model_answer import Assembly, SceneModel, SmallMotion
 from core.multibody.undecided import Code
 from core.quantities import Unit
@@ -311,3 +312,4 @@ class SceneSolution:
     problem: SceneProblem | None = None
     thresholds: tuple[RestRange, ...] | None = None
     assembly: Assembly | None = None
+    equations: SceneEquations | None = None

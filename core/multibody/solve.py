@@ -53,6 +53,7 @@ Output = Literal[
     "work-in-time",
     "paths-in-time",
     "equilibria",
+    "equations",
 ]
 OUTPUTS: tuple[Output, ...] = get_args(Output)
 OF_MOTION: tuple[Output, ...] = ("trajectory", *(name for name in OUTPUTS if name.endswith("-in-time")))

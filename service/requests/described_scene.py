@@ -263,7 +263,7 @@ class DescribedSceneRequest(SceneDescription):
         max_length=MOST_OUTPUTS,
         description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}. work-in-time: what gravity, springs, "
         "dampers, motors and forces have done; paths-in-time: lengths of paths; momenta-in-time: momenta and, about "
-        "the origin, angular momenta.",
+        "the origin, angular momenta; equations: the equations of motion in writing.",
     )
 
     def requested(self) -> tuple[Output | When | ExtremesOf | RestOf, ...] | None:

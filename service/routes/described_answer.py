@@ -10,6 +10,7 @@ from core.multibody.answer import MotionPhase, RestRange, SceneExtremes
 from core.multibody.undecided import Code
 from core.quantities import Unit
 from core.systems.trajectory import Work
+from service.routes.equations_answer import SceneEquations
 from service.schemas import Envelope, Errors, Joules, N, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
 
 Metres = Annotated[list[float], Unit("m"), Field(min_length=2, max_length=3)]
@@ -281,4 +282,7 @@ class DescribedSceneAnswer(AtStart[float]):
     equilibria: list[SceneEquilibrium] | None = None
     thresholds: list[RestRange] | None = Field(default=None, description="If thresholds were requested, in order.")
     assembly: Assembly | None = Field(default=None, description="If assemble was requested.")
+    equations: SceneEquations | None = Field(
+        default=None, description="If equations were requested; left out where mechanics decides no motion."
+    )
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

@@ -14,6 +14,7 @@ from core.systems.budget import Budget
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
 from service.routes.described_answer import UNDECIDED_PATH, DescribedAccuracy, DescribedSceneAnswer, SceneColumn
+from service.routes.equations_answer import equations_fields
 from service.routes.motion_figures import draw_described
 from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PostRoute
@@ -84,6 +85,8 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         answer["assembly"] = assembly_fields(found.assembly)
     if found.thresholds is not None:
         answer["thresholds"] = [_of_rest(one) for one in found.thresholds]
+    if found.equations is not None:
+        answer["equations"] = equations_fields(found.equations)
     return answer
 
 

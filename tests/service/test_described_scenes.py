@@ -696,3 +696,32 @@ async def test_a_sketch_is_answered_planned_and_certified() -> None:
         assert refused.json()["errors"][0]["pointer"] == pointer
     refused = (await asked(of_rod(length=2.5))).json()
     assert '"p" at [1.5, -2]' in json.dumps(refused).replace('\\"', '"')
+
+
+async def test_equations_are_answered_in_three_notations() -> None:
+    """Of two bodies that nothing joins together, in one list."""
+    bodies = {"bob": {"mass": 2, "at": [0.6, -0.8]}, "stone": {"mass": 1, "at": [3, 0], "velocity": [1, 2]}}
+    rod = {"kind": "rod", "name": "rod", "a": "bob", "b": [0, 0]}
+    question = {"gravity": [0, -9.81], "bodies": bodies, "connections": [rod], "outputs": ["equations"]}
+    found = (await asked(question)).json()["equations"]
+    assert [one["plain"] for one in found["equations"]] == [
+        "bob.theta'' = -9.81*sin(bob.theta)",
+        "stone.x'' = 0",
+        "stone.y'' = -9.81",
+    ]
+    assert found["equations"][0]["latex"] == r"\ddot{\theta}_{\text{bob}} = -9.81 \, \sin \theta_{\text{bob}}"
+    assert found["equations"][0]["mathml"].startswith("<math>")
+    assert found["coordinates"] == {"bob.theta": "atan2(bob.x, -bob.y)", "stone.x": "stone.x", "stone.y": "stone.y"}
+    assert found["places"]["bob.x"] == "sin(bob.theta)"
+    assert found["closed_form"]["stone.y"]["plain"] == "2*t - 4.905*t^2"
+    kinetic, potential = "bob.theta'^2 + 0.5*stone.x'^2 + 0.5*stone.y'^2", "19.62*cos(bob.theta) - 9.81*stone.y"
+    assert found["lagrangian"]["plain"] == f"{kinetic} + {potential}"
+    assert {one["name"] for one in found["conserved"]} == {"energy", "momentum of stone.x"}
+
+
+async def test_equations_that_nobody_reads_are_refused() -> None:
+    bodies = {f"p{i}": POINT | {"at": [i + 1, 0]} for i in range(30)}
+    rods = [{"kind": "rod", "a": f"p{i}", "b": f"p{i - 1}" if i else [0, 0]} for i in range(30)]
+    question = {"gravity": [0, -9.81], "bodies": bodies, "connections": rods, "outputs": ["energy", "equations"]}
+    problem = (await asked(question)).json()
+    assert (problem["code"], problem["errors"][0]["pointer"]) == ("budget-exceeded", "/outputs/1")

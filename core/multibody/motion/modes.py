@@ -23,7 +23,7 @@ from core.multibody.algebra.characteristic_roots import roots_but_zero
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degree, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import BallState, Mode, Motion, States
+from core.multibody.motion.motion import BallState, ElementaryTerm, Mode, Motion, States
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table
 from core.work import spend
@@ -171,6 +171,19 @@ class Modes(Motion):
         start, n = [*self.table.q, *self.table.v, ONE], len(self.table.q)
         terms = self._terms(start)
         return [BallState(x[:n], x[n : 2 * n]) for x in (self._at(t, start, terms) for t in times)]
+
+    def elementary(self) -> list[list[ElementaryTerm]] | None:
+        """Return the coordinates as sums over modes, None where roots coincide."""
+        terms = self._terms([*self.table.q, *self.table.v, ONE])
+        if terms is None:
+            return None
+        found: list[list[ElementaryTerm]] = [[] for _ in self.table.q]
+        for root, column in terms:
+            growth, frequency = acb(root).real, acb(root).imag
+            for own, x in zip(found, column, strict=False):
+                own.append(ElementaryTerm(acb(x).real, 0, growth, frequency))
+                own.append(ElementaryTerm(-acb(x).imag, 0, growth, frequency, sine=True))
+        return found
 
     def _terms(self, start: list[Ball]) -> Any:
         """Return roots and their vector coefficients, or None where roots coincide.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -74,6 +74,25 @@ class BallState:
     v: Sequence[Ball]
     path: Sequence[Sequence[Ball]] = ()
     turned: Ball | None = None
+
+
+class ElementaryTerm(NamedTuple):
+    """A term value * t^power * exp(growth t) * cos(frequency t), or with the sine.
+
+    Attributes
+    ----------
+    value : ball
+    power : int
+    growth, frequency : ball
+        1/s and rad/s.
+    sine : bool
+    """
+
+    value: Ball
+    power: int = 0
+    growth: Ball = ZERO
+    frequency: Ball = ZERO
+    sine: bool = False
 
 
 def in_pairs(states: Sequence[BallState], count: int) -> tuple[Floats, Floats]:
@@ -209,6 +228,10 @@ class Motion(Protocol):
         """Return coordinates at times of one sign, shape (t, n), to a few roundings of doubles."""
         found: Floats = self.states(times).q[..., 0]
         return found
+
+    def elementary(self) -> list[list[ElementaryTerm]] | None:
+        """Return the coordinates as sums of elementary functions of the time, None where they are none."""
+        return None
 
     def keeps_positive(self, length: Poly) -> bool:
         """Return whether a length that is positive at the start is so for all time, or its zero is where it ends."""

@@ -13,7 +13,7 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import BallState, Motion, States
+from core.multibody.motion.motion import BallState, ElementaryTerm, Motion, States
 from core.multibody.table.table import Table
 
 
@@ -47,6 +47,11 @@ class Uniform(Motion):
         place, fast, pull = (np.abs(x[:, 0])[None, :] for x in numbers)
         q_error = 2.0**-100 * (place + fast * t + pull * t * t)
         return States(q, v, q_error, 2.0**-100 * (fast + pull * t))
+
+    def elementary(self) -> list[list[ElementaryTerm]]:
+        """Return the coordinates as polynomials in time."""
+        numbers = zip(self.table.q, self.table.v, self.acceleration, strict=True)
+        return [[ElementaryTerm(x), ElementaryTerm(y, 1), ElementaryTerm(a / 2, 2)] for x, y, a in numbers]
 
     def in_balls(self, times: Sequence[Ball]) -> list[BallState]:
         """Return the states, which are polynomials in time."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from core.multibody.answer import Energy, EnergyErrors, Equilibrium, SceneSolution
+from core.multibody.equations_answer import SceneEquations
 from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
 from core.multibody.parts.common_span import answers_in_common
@@ -70,6 +71,7 @@ def answered_by_parts(
         *joined_searches(solutions, request.outputs, parts),
         phases=joined_phases(solutions, span.end),
         problem=ending[0].problem if ending else None,
+        equations=_equations(scene, request, answered),
     )
 
 
@@ -77,10 +79,26 @@ def _equilibria(
     scene: Scene, request: SceneRequest, answered: Callable[[Scene, SceneRequest], SceneSolution]
 ) -> tuple[Equilibrium, ...] | None:
     """Return the places where all parts rest, which are places of the whole scene; None if they are not requested."""
-    if "equilibria" not in request.outputs:
+    found = _of_whole("equilibria", scene, request, answered)
+    return None if found is None else found.equilibria
+
+
+def _equations(
+    scene: Scene, request: SceneRequest, answered: Callable[[Scene, SceneRequest], SceneSolution]
+) -> SceneEquations | None:
+    """Return the equations of all parts together; None if they are not requested."""
+    found = _of_whole("equations", scene, request, answered)
+    return None if found is None else found.equations
+
+
+def _of_whole(
+    name: str, scene: Scene, request: SceneRequest, answered: Callable[[Scene, SceneRequest], SceneSolution]
+) -> SceneSolution | None:
+    """Return the answer of the scene as one part to one output, without times; None if that is not requested."""
+    if name not in request.outputs:
         return None
-    places = [output if output == "equilibria" else ELSEWHERE for output in request.outputs]
-    return answered(scene, replace(request, times=request.times[:0], outputs=places)).equilibria
+    only = [output if output == name else ELSEWHERE for output in request.outputs]
+    return answered(scene, replace(request, times=request.times[:0], outputs=only))
 
 
 def _together(parts: Sequence[Mapping[str, Figure] | None]) -> Mapping[str, Figure] | None:

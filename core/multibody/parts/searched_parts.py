@@ -11,6 +11,9 @@ from core.multibody.trajectory.scene_request import Output
 
 OF_ALL = {"energy.kinetic", "energy.potential", "momentum", "angular_momentum"}
 """Columns of the whole scene."""
+OF_THE_WHOLE = ("equilibria", "equations")
+"""Outputs that are answered for the scene as one part."""
+
 ELSEWHERE = "elsewhere"
 """Place among the outputs of what is requested of another part: the others keep the numbers of their paths."""
 
@@ -30,7 +33,7 @@ def outputs_of(part: int, outputs: Sequence[Output], parts: Sequence[Scene]) -> 
 
 
 def _is_of(part: int, output: Output, parts: Sequence[Scene]) -> bool:
-    return output != "equilibria" if isinstance(output, str) else part_of(output.quantity, parts) == part
+    return output not in OF_THE_WHOLE if isinstance(output, str) else part_of(output.quantity, parts) == part
 
 
 def joined_searches(

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from itertools import zip_longest
 
-from core.errors import NotApplicable, SlackAtStart
+from core.errors import NotApplicable, SlackAtStart, inside_field
 from core.multibody.algebra.doubles import error_in_doubles
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.answer import BodyAcceleration, ForceAnswer, MotionPhase, SceneProblem, SceneSolution
 from core.multibody.equations.packed import nearest
+from core.multibody.equations_answer import SceneEquations
+from core.multibody.formulation.scene_equations import equations_of
 from core.multibody.language.scene import Scene
 from core.multibody.model_answer import PartErrors, PartModel, SceneModel
 from core.multibody.motion.modelling import modelled
@@ -79,8 +81,17 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
             for phase, following in zip_longest(motion.phases, motion.phases[1:])
         ),
         problem=_problem(motion),
+        equations=_equations(scene, motion, request) if "equations" in outputs else None,
     )
     return answer, system
+
+
+def _equations(scene: Scene, motion: PhaseMotion, request: SceneRequest) -> SceneEquations | None:
+    """Return the equations of the first phase of a motion, None where mechanics does not decide which it is."""
+    if not motion.phases:
+        return None
+    with inside_field("outputs", list(request.outputs).index("equations")):
+        return equations_of(motion.phases[0].models[0], [*scene.let, *scene.bodies])
 
 
 def _motion_of(scene: Scene, request: SceneRequest) -> PhaseMotion:

@@ -1,0 +1,104 @@
+"""What is answered about the equations of a scene: formulas as text, as LaTeX and as MathML."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class WrittenFormula:
+    """A formula or an equation.
+
+    Attributes
+    ----------
+    plain : str
+        Text in the grammar of formulas, with a prime for each derivative by time.
+    latex, mathml : str
+    """
+
+    plain: str
+    latex: str
+    mathml: str
+
+
+@dataclass(frozen=True)
+class ConservedQuantity:
+    """A function of places and rates that stays what it is.
+
+    Attributes
+    ----------
+    name : str
+    formula : WrittenFormula
+    value, error : float
+        In SI units.
+    """
+
+    name: str
+    formula: WrittenFormula
+    value: float
+    error: float | None
+
+
+@dataclass(frozen=True)
+class LinearEquations:
+    """M x'' + D x' + K x = b of a part whose equations are linear.
+
+    Attributes
+    ----------
+    coordinates : tuple of str
+        x.
+    mass, damping, stiffness : tuple of tuple of float
+    load : tuple of float
+    """
+
+    coordinates: tuple[str, ...]
+    mass: tuple[tuple[float, ...], ...]
+    damping: tuple[tuple[float, ...], ...]
+    stiffness: tuple[tuple[float, ...], ...]
+    load: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class SceneEquations:
+    """The equations of motion of a scene in the first of its phases.
+
+    Attributes
+    ----------
+    coordinates : mapping of str to (str or None)
+        Generalised coordinates, each with its formula of columns; None for what no column shows.
+    why : tuple of str
+        Why these suffice, in sentences.
+    degrees_of_freedom : int
+    places : mapping of str to str
+        Columns of bodies as formulas of the coordinates.
+    constants : mapping of str to float
+        Numbers of many digits that have a name in the formulas, and those of `let`.
+    equations : tuple of WrittenFormula
+        As many as coordinates, with multipliers lambda_1, ... of the constraints.
+    constraints : tuple of WrittenFormula
+        What the coordinates have to satisfy besides.
+    forces : mapping of str to WrittenFormula
+        Forces that are formulas of the client's, and those of connections, as functions of coordinates, rates and
+        accelerations.
+    lagrangian : WrittenFormula or None
+        None where other forces act than those with a potential.
+    conserved : tuple of ConservedQuantity
+    linear : tuple of LinearEquations
+        Of the parts whose equations are linear.
+    closed_form : mapping of str to WrittenFormula
+        Coordinates as functions of the time, where these are elementary.
+    """
+
+    coordinates: Mapping[str, str | None]
+    why: tuple[str, ...]
+    degrees_of_freedom: int
+    places: Mapping[str, str]
+    constants: Mapping[str, float]
+    equations: tuple[WrittenFormula, ...]
+    constraints: tuple[WrittenFormula, ...]
+    forces: Mapping[str, WrittenFormula]
+    lagrangian: WrittenFormula | None
+    conserved: tuple[ConservedQuantity, ...]
+    linear: tuple[LinearEquations, ...]
+    closed_form: Mapping[str, WrittenFormula]

@@ -1,0 +1,56 @@
+"""Numbers of many digits get names, so that formulas can be read; formulas are written in every notation."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from core.formulas import Node
+from core.multibody.equations_answer import WrittenFormula
+from core.multibody.formulation.formula_nodes import is_short
+from core.multibody.formulation.notation.latex import latex
+from core.multibody.formulation.notation.mathml import mathml
+from core.multibody.formulation.notation.plain import plain
+
+
+class Constants:
+    """Writes formulas, and names their constants c1, c2, ...
+
+    Parameters
+    ----------
+    reserved : collection of str
+        Names that constants must not have.
+    """
+
+    def __init__(self, reserved: Collection[str]) -> None:
+        self._reserved, self._named = frozenset(reserved), dict[str, str]()
+        self._count = 0
+
+    def plain(self, node: Node) -> str:
+        """Return a formula as text."""
+        return plain(self._with_names(node))
+
+    def formula(self, node: Node) -> WrittenFormula:
+        """Return a formula in every notation."""
+        named = self._with_names(node)
+        return WrittenFormula(plain(named), latex(named), mathml(named))
+
+    def equation(self, left: Node, right: Node) -> WrittenFormula:
+        """Return an equation in every notation."""
+        sides = self._with_names(left), self._with_names(right)
+        return WrittenFormula(" = ".join(map(plain, sides)), " = ".join(map(latex, sides)), mathml(*sides))
+
+    def values(self, others: Mapping[str, float]) -> dict[str, float]:
+        """Return the constants that have been named by now, after others."""
+        return {**others, **{name: float(digits) for digits, name in self._named.items()}}
+
+    def _with_names(self, node: Node) -> Node:
+        if node.kind == "number" and not is_short(node.text):
+            return Node("name", self._name(node.text))
+        return Node(node.kind, node.text, tuple(self._with_names(inner) for inner in node.inner))
+
+    def _name(self, digits: str) -> str:
+        while digits not in self._named:
+            self._count += 1
+            if f"c{self._count}" not in self._reserved:
+                self._named[digits] = f"c{self._count}"
+        return self._named[digits]

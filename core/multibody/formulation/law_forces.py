@@ -1,0 +1,49 @@
+"""Forces that clients give as formulas: the names that they have in the equations, and what they are."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from core.formulas import Node
+from core.multibody.formulation.chart import Chart
+from core.multibody.formulation.formula_nodes import call, node_of_sum
+from core.multibody.formulation.trigonometric_sums import Sum
+from core.multibody.language.motion_formulas import LENGTH
+from core.multibody.laws.law import Input, Law
+
+
+def force_symbols(laws: Sequence[Law], taken: Collection[str]) -> list[str]:
+    """Return names for the values of laws: that of the connection, with a number where it has several."""
+    owners = [law.name for law in laws]
+    found: list[str] = []
+    for name in owners:
+        alone = owners.count(name) == 1 and f"{name}.force" not in taken
+        count = 1
+        while (new := f"{name}.force" if alone else f"{name}.force_{count}") in {*found, *taken}:
+            count += 1
+        found.append(new)
+    return found
+
+
+def law_nodes(chart: Chart, names: Sequence[str]) -> dict[str, Node]:
+    """Return the formulas of the laws of a chart's table in its variables, by the names of their values."""
+    return {name: _node(law.root, law, chart) for name, law in zip(names, chart.table.acting, strict=True)}
+
+
+def _node(node: Node, law: Law, chart: Chart) -> Node:
+    if node.kind == "name" and node.text in law.inputs:
+        return node_of_sum(_value(law.inputs[node.text], chart))
+    inner = tuple(_node(one, law, chart) for one in node.inner)
+    if node.kind == LENGTH:
+        total = None
+        for one in inner:
+            square = Node("^", inner=(one, Node("number", "2")))
+            total = square if total is None else Node("+", inner=(total, square))
+        assert total is not None, "a speed has components"
+        return call("sqrt", total)
+    return Node(node.kind, node.text, inner)
+
+
+def _value(given: Input, chart: Chart) -> Sum:
+    place = Sum.of(given.form, chart.places)
+    return place.rate() if given.rate else place

@@ -1,0 +1,1 @@
+"""Formulas as text, as LaTeX and as MathML."""

@@ -1,0 +1,217 @@
+"""The equations of a scene in writing: each of its parts in the variables of its chart, and what they say together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from core.errors import BudgetExceeded
+from core.formulas import Node
+from core.multibody.algebra.directions import scalar_product
+from core.multibody.algebra.doubles import error_in_doubles, in_doubles
+from core.multibody.algebra.polynomials import Ball, is_zero
+from core.multibody.equations_answer import ConservedQuantity, SceneEquations
+from core.multibody.formulation.chart import Chart
+from core.multibody.formulation.closed_forms import closed_forms
+from core.multibody.formulation.constants import Constants
+from core.multibody.formulation.euler import conserved_of_body, euler_equations
+from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
+from core.multibody.formulation.lagrange import ENERGY, Conserved, lagrange_equations, measures_of, value_at_start
+from core.multibody.formulation.law_forces import force_symbols, law_nodes
+from core.multibody.formulation.linear_equations import linear_equations
+from core.multibody.formulation.sides import Sides, constant_accelerations, equation_sides
+from core.multibody.formulation.symbols import columns_of, coordinates_of, symbols_of
+from core.multibody.formulation.trigonometric_sums import Sum, added
+from core.multibody.motion.modelling import Modelled, Piece
+from core.multibody.motion.motion import Motion
+from core.multibody.motion.turning_body import TurningBody, turning_body
+from core.multibody.start import NumberKind, energy_of
+
+MOST_COORDINATES = 40
+"""Coordinates of the tables of the parts together: chains of twenty links have equations that nobody reads."""
+
+
+@dataclass
+class _Written:
+    """What is gathered from the parts of a scene."""
+
+    coordinates: dict[str, Node | None] = field(default_factory=dict)
+    why: list[str] = field(default_factory=list)
+    equations: list[Sides] = field(default_factory=list)
+    constraints: list[Sides] = field(default_factory=list)
+    forces: dict[str, Node] = field(default_factory=dict)
+    lagrangian: list[Sum] | None = field(default_factory=list)
+    conserved: list[tuple[Conserved, Ball]] = field(default_factory=list)
+    linear: list[tuple[list[str], Sequence[Sum]]] = field(default_factory=list)
+    closed: dict[str, Node] = field(default_factory=dict)
+    numbers: dict[str, Ball] = field(default_factory=dict)
+    places: dict[int, Sum] = field(default_factory=dict)
+    multipliers: int = 0
+
+
+def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquations:
+    """Return the equations of a scene; the precision of balls is the caller's.
+
+    Parameters
+    ----------
+    found : Modelled
+    reserved : sequence of str
+        Names that constants must not have.
+
+    Raises
+    ------
+    BudgetExceeded
+        For a scene with more coordinates than can be read.
+    """
+    moving = [(piece, motion) for piece, motion in found.moving if not _rests(motion)]
+    count = sum(len(piece.table.names) for piece, _ in moving)
+    if count > MOST_COORDINATES:
+        remedy = "leave the equations out, or ask about a part of the scene"
+        raise BudgetExceeded("coordinates of written equations", count, MOST_COORDINATES, remedy=remedy)
+    reduced = found.whole.reduced
+    coordinates = found.described.measures.coordinates
+    columns = columns_of(reduced, found.described.scene.bodies, coordinates.dimension)
+    symbols = symbols_of(reduced.table.names)
+    written = _Written()
+    # What rests stays where it is.
+    for i, place in enumerate(reduced.table.q):
+        written.places[i] = Sum.number(place)
+    for piece, motion in moving:
+        own = {k: columns[i] for k, i in enumerate(piece.indices) if i in columns}
+        body = turning_body(piece.table)
+        if body is None:
+            _write_part(written, piece, motion, [symbols[i] for i in piece.indices], own)
+        else:
+            _write_body(written, body, symbols[piece.indices[0]].partition(".")[0], piece)
+    if any(row.slide is not None for row in found.described.measures.table.rows):
+        written.why.append("friction that turns with the slip is written with the direction that it starts with")
+    conserved = _with_one_energy(found, written.conserved, len(moving))
+    constants = Constants([*reserved, *written.numbers])
+    places = _places(found, written.places)
+    shown = SceneEquations(
+        {name: None if node is None else constants.plain(node) for name, node in written.coordinates.items()},
+        tuple(dict.fromkeys([*reduced.steps, *written.why])),
+        sum(piece.freedom for piece, _ in moving),
+        {name: constants.plain(node) for name, node in places.items()},
+        {},
+        tuple(constants.equation(*sides) for sides in written.equations),
+        tuple(constants.equation(*sides) for sides in written.constraints),
+        {name: constants.formula(node) for name, node in written.forces.items()},
+        None if written.lagrangian is None or not moving else constants.formula(node_of_sum(added(written.lagrangian))),
+        tuple(
+            ConservedQuantity(
+                one.name, constants.formula(node_of_sum(one.formula)), in_doubles(value), error_in_doubles(value)
+            )
+            for one, value in conserved
+        ),
+        tuple(one for names, sums in written.linear for one in linear_equations(names, sums)),
+        {name: constants.formula(node) for name, node in written.closed.items()},
+    )
+    # All constants are known when everything is written.
+    given = {name: in_doubles(value) for name, value in written.numbers.items()}
+    return replace(shown, constants=constants.values(given))
+
+
+def _with_one_energy(
+    found: Modelled, conserved: list[tuple[Conserved, Ball]], parts: int
+) -> list[tuple[Conserved, Ball]]:
+    """Return what is conserved with the energies of all parts as that of the scene, where none is missing."""
+    own = [(one, value) for one, value in conserved if one.name.startswith(ENERGY)]
+    others = [(one, value) for one, value in conserved if not one.name.startswith(ENERGY)]
+    if not own or len(own) < parts:
+        return conserved
+    total = energy_of(found.described, NumberKind(lambda value: value, None)).total
+    # What rests, spins steadily, or is a spring's energy at its length of zero is a constant.
+    rest = Sum.number(total - sum((value for _, value in own), total * 0))
+    return [(Conserved(ENERGY, added([*(one.formula for one, _ in own), rest])), total), *others]
+
+
+def _rests(motion: Motion) -> bool:
+    return not motion.moves
+
+
+def _write_part(
+    written: _Written, piece: Piece, motion: Motion, symbols: list[str], columns: Mapping[int, Node]
+) -> None:
+    """Write a part in the variables of its chart."""
+    # Rows that follow from others have no multipliers of their own.
+    chart = Chart.of(replace(piece.table, rows=[piece.table.rows[r] for r in piece.chosen]), symbols)
+    names = force_symbols(piece.table.acting, written.forces)
+    multipliers = [f"lambda_{written.multipliers + k + 1}" for k in range(len(chart.rows))]
+    written.multipliers += len(multipliers)
+    found = lagrange_equations(chart, names, multipliers)
+    written.coordinates |= coordinates_of(chart, columns)
+    written.why += chart.steps
+    written.equations += equation_sides(found.equations)
+    written.constraints += [(node_of_sum(one), Node("number", "0")) for one in measures_of(chart)]
+    written.forces |= law_nodes(chart, names)
+    for law in piece.table.acting:
+        written.numbers |= law.numbers
+    if found.lagrangian is None:
+        written.lagrangian = None
+    elif written.lagrangian is not None:
+        written.lagrangian.append(found.lagrangian)
+    written.conserved += [(one, value_at_start(chart, one.formula)) for one in found.conserved]
+    if not multipliers and not piece.table.acting:
+        written.linear.append((list(found.equations), list(found.equations.values())))
+    written.closed |= closed_forms(chart, motion, constant_accelerations(found.equations))
+    for k, i in enumerate(piece.indices):
+        written.places[i] = chart.places[k]
+
+
+def _write_body(written: _Written, body: TurningBody, name: str, piece: Piece) -> None:
+    """Write Euler's equations of a body."""
+    rates = [f"{name}.omega_{k}" for k in (1, 2, 3)]
+    down = [f"{name}.gamma_{k}" for k in (1, 2, 3)]
+    for rate, end in zip(rates, "xyz", strict=True):
+        written.coordinates[rate] = Node("name", f"{name}.angular_velocity.{end}")
+    start = dict(zip(rates, body.angular_velocity, strict=True))
+    if body.arm is not None:
+        for k, axis in enumerate(body.axes):
+            own = [(x, Node("name", f"{name}.axis{k + 1}.{end}")) for x, end in zip(body.pull, "xyz", strict=True)]
+            written.coordinates[down[k]] = node_of_terms([(x, [column]) for x, column in own if not is_zero(x)])
+            start[down[k]] = scalar_product(body.pull, axis)
+    written.why.append(
+        f"{name}: a body about a point has three rates of turn along its axes"
+        + (", and three components of the vertical" if body.arm is not None else "")
+    )
+    written.equations += equation_sides(euler_equations(body, rates, down), order=1)
+    written.lagrangian = None
+    chart = Chart(piece.table, [], start=start)
+    for what, formula in conserved_of_body(body, rates, down).items():
+        written.conserved.append((Conserved(f"{what} of {name}", formula), value_at_start(chart, formula)))
+    for i in piece.indices:
+        del written.places[i]
+
+
+def _places(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:
+    """Return the columns of bodies as formulas of the coordinates."""
+    expressions, answer = found.whole.reduced.expressions, {}
+    for name, frame in found.described.measures.coordinates.frames.items():
+        own = [(f"{name}.{axis}", i) for axis, i in zip("xyz", frame.position, strict=False)]
+        if frame.axis is not None:
+            own += [(f"{name}.axis.{axis}", i) for axis, i in zip("xyz", frame.axis[1], strict=True)]
+        if frame.turn is not None:
+            own.append((f"{name}.angle", frame.turn))
+        for column, i in own:
+            if all(key[0] in places for key in expressions[i] if key):
+                answer[column] = node_of_sum(_substituted(expressions[i], places))
+        if frame.turn is None and frame.direction is not None:
+            cosine, sine = (_substituted(expressions[i], places) for i in frame.direction)
+            answer[f"{name}.angle"] = _angle(cosine, sine)
+    return answer
+
+
+def _substituted(expression: Mapping[tuple[int, ...], Ball], places: Mapping[int, Sum]) -> Sum:
+    return added(places[key[0]].times(value) if key else Sum.number(value) for key, value in expression.items())
+
+
+def _angle(cosine: Sum, sine: Sum) -> Node:
+    """Return the angle with a cosine and a sine."""
+    if len(cosine.terms) == 1:
+        term = next(iter(cosine.terms))
+        if term.function == "cos" and len(term.wave) == 1 and cosine == Sum.cosine(term.wave[0][0]):
+            name = term.wave[0][0]
+            if sine == Sum.sine(name):
+                return Node("name", name)
+    return call("atan2", node_of_sum(sine), node_of_sum(cosine))

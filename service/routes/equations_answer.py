@@ -1,0 +1,86 @@
+"""The equations of a scene as they are answered and documented."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from core.multibody.equations_answer import SceneEquations as Written
+from core.multibody.equations_answer import WrittenFormula
+from core.quantities import Unit
+from service.schemas import View, fields_of
+
+InSI = Annotated[float, Unit("in SI units and radians")]
+"""A number whose unit follows from the formula in which it stands."""
+
+
+class WrittenEquation(View):
+    """A formula or an equation in three notations."""
+
+    plain: str = Field(description="Text, as formulas of questions are; a prime is a derivative by time.")
+    latex: str
+    mathml: str
+
+
+class ConservedQuantity(WrittenEquation):
+    """A function of coordinates and rates that stays what it is."""
+
+    name: str
+    value: InSI
+    error: InSI | None = Field(description="Bound of the error of the value; null beyond the range of doubles.")
+
+
+class LinearPart(View):
+    """M x'' + D x' + K x = b of a part whose equations are linear, in SI units and radians."""
+
+    coordinates: list[str] = Field(description="x.")
+    mass: list[list[InSI]] = Field(description="M.")
+    damping: list[list[InSI]] = Field(description="D, with gyroscopic terms.")
+    stiffness: list[list[InSI]] = Field(description="K.")
+    load: list[InSI] = Field(description="b.")
+
+
+class SceneEquations(View):
+    """The equations of motion of a scene, of the first of its phases, in coordinates that suffice."""
+
+    coordinates: dict[str, str | None] = Field(
+        description="Coordinates, each with its formula of columns; null for turns of balls, which no column shows."
+    )
+    why: list[str] = Field(description="Why these suffice, in sentences.")
+    degrees_of_freedom: Annotated[int, Unit("1")]
+    places: dict[str, str] = Field(description="Places and angles of bodies as formulas of the coordinates.")
+    constants: dict[str, InSI] = Field(
+        description="Numbers of many digits, which have names in the formulas, and names of `let` that laws use."
+    )
+    equations: list[WrittenEquation] = Field(
+        description="Equations of motion, one for each coordinate, with multipliers lambda_1, ... of the constraints."
+    )
+    constraints: list[WrittenEquation] = Field(description="What the coordinates satisfy besides, in the same order.")
+    forces: dict[str, WrittenEquation] = Field(description="Forces that are formulas of the question.")
+    lagrangian: WrittenEquation | None = Field(description="null unless its equations are these.")
+    conserved: list[ConservedQuantity] = Field(description="As the equations show for every motion.")
+    linear: list[LinearPart] = Field(description="Matrices of the parts whose equations are linear.")
+    closed_form: dict[str, WrittenEquation] = Field(
+        description="Coordinates as functions of t, where these are elementary."
+    )
+
+
+def equations_fields(found: Written) -> dict[str, Any]:
+    """Return the fields of written equations, formulas as objects."""
+
+    def shown(formulas: dict[str, WrittenFormula]) -> dict[str, Any]:
+        return {name: fields_of(one) for name, one in formulas.items()}
+
+    return fields_of(found) | {
+        "equations": [fields_of(one) for one in found.equations],
+        "constraints": [fields_of(one) for one in found.constraints],
+        "forces": shown(dict(found.forces)),
+        "lagrangian": None if found.lagrangian is None else fields_of(found.lagrangian),
+        "conserved": [
+            {"name": one.name, "value": one.value, "error": one.error} | fields_of(one.formula)
+            for one in found.conserved
+        ],
+        "linear": [fields_of(one) for one in found.linear],
+        "closed_form": shown(dict(found.closed_form)),
+    }

@@ -1,0 +1,186 @@
+"""Printed equations, read back, have the accelerations of the answer; what they say is conserved, is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from core.multibody.answer import SceneSolution
+from core.multibody.language.numerals import Numerals
+from core.multibody.language.reading import scene_from
+from core.multibody.language.scene import Scene
+from core.multibody.solve import solve_scene
+from service.requests.described_scene import SCENE_FIELDS
+from service.routes.scene_catalogue import scene_catalogue
+from tests.core.multibody.formulation.reading import Jet, evaluated, solved
+
+AGREED = 1e-12
+"""Largest difference of accelerations, relative to the largest of the scene."""
+
+UNDECIDED = {"painleve-chalk"}
+"""Scenes of the catalogue that have no motion."""
+
+
+def scene_of(question: Mapping[str, Any]) -> Scene:
+    return scene_from({name: question[name] for name in SCENE_FIELDS if name in question})
+
+
+def answer_of(scene: Scene, times: list[float] | None = None) -> SceneSolution:
+    outputs = ["accelerations", "trajectory", "energy", "equations"]
+    return solve_scene(scene, times or [0.0], outputs, 1e-6)  # type: ignore[arg-type]
+
+
+def columns_at(scene: Scene, answer: SceneSolution, row: int) -> dict[str, Jet]:
+    """Return the columns at a sample with their rates."""
+    assert answer.trajectory is not None
+    found = answer.trajectory.columns
+    jets = {}
+    for name in scene.bodies:
+        for axis, place, rate in zip(
+            "xyz", found[f"{name}.position"].values[row], found[f"{name}.velocity"].values[row], strict=False
+        ):
+            jets[f"{name}.{axis}"] = Jet(mpmath.mpf(place), mpmath.mpf(rate))
+        if f"{name}.angle" in found:
+            angle, rate = (found[f"{name}.{end}"].values[row] for end in ("angle", "angular_velocity"))
+            jets[f"{name}.angle"] = Jet(mpmath.mpf(angle), mpmath.mpf(rate))
+        if f"{name}.angular_velocity_in_space" in found:
+            turning = found[f"{name}.angular_velocity_in_space"].values[row]
+            for axis, rate in zip("xyz", turning, strict=True):
+                jets[f"{name}.turn.{axis}"] = Jet(mpmath.mpf(0), mpmath.mpf(rate))
+        if f"{name}.attitude" in found:
+            axes = rotation(found[f"{name}.attitude"].values[row])
+            turning = found[f"{name}.angular_velocity"].values[row]
+            for k, axis in enumerate("xyz"):
+                jets[f"{name}.angular_velocity.{axis}"] = Jet(mpmath.mpf(turning[k]))
+                jets |= axis_of(f"{name}.axis{k + 1}", axes[:, k], axes @ turning)
+        if f"{name}.axis" in found and row == 0:
+            jets |= axis_of(f"{name}.axis", found[f"{name}.axis"].values[row], turning_at_start(scene, name))
+    return jets
+
+
+def axis_of(name: str, axis: np.ndarray, turning: np.ndarray) -> dict[str, Jet]:
+    rates = np.cross(turning, axis)
+    return {f"{name}.{end}": Jet(mpmath.mpf(axis[k]), mpmath.mpf(rates[k])) for k, end in enumerate("xyz")}
+
+
+def rotation(quaternion: np.ndarray) -> np.ndarray:
+    w, x, y, z = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def turning_at_start(scene: Scene, name: str) -> np.ndarray:
+    """Return the angular velocity in space that a description gives a top."""
+    body: Any = scene.bodies[name]
+    numerals = Numerals.of(scene.let, scene.numbers)
+
+    def read(vector: Any) -> list[float]:
+        return [float(x) for x in numerals.vector(vector, (), 3)]
+
+    axes = np.array([read(axis) for axis in body.axes]) if body.axes else np.eye(3)
+    return np.array(read(body.angular_velocity or [0, 0, 0])) @ axes
+
+
+def agreed(scene: Scene, answer: SceneSolution) -> Iterator[tuple[str, float, float]]:
+    """Yield every acceleration that the printed equations have, with that of the answer."""
+    assert answer.equations is not None
+    assert answer.accelerations is not None
+    with mpmath.workdps(25):
+        found = solved(answer.equations, columns_at(scene, answer, 0))
+        assert found.rank == found.unknowns
+        for name, one in answer.accelerations.items():
+            for axis, value in zip("xyz", one.linear, strict=False):
+                if f"{name}.{axis}" in found.places:
+                    yield f"{name}.{axis}", float(found.places[f"{name}.{axis}"].gain), value
+            if f"{name}.angle" in found.places:
+                assert isinstance(one.angular, float)
+                yield f"{name}.angle", float(found.places[f"{name}.angle"].gain), one.angular
+            for k in (1, 2, 3):
+                if f"{name}.omega_{k}" in found.jets:
+                    assert isinstance(one.angular, tuple)
+                    yield f"{name}.omega_{k}", float(found.jets[f"{name}.omega_{k}"].rate), one.angular[k - 1]
+
+
+@pytest.mark.parametrize("name", sorted(set(scene_catalogue()) - UNDECIDED))
+def test_printed_equations_have_the_accelerations_of_the_answer(name: str) -> None:
+    scene = scene_of(scene_catalogue()[name].question)
+    compared = list(agreed(scene, answer_of(scene)))
+    assert compared
+    size = max(abs(value) for _, _, value in compared)
+    for column, printed, value in compared:
+        assert abs(printed - value) <= AGREED * size, (column, printed, value)
+
+
+LATER = 0.03
+"""Time (s) that every motion of the catalogue but those named below reaches in its first phase."""
+
+
+def later(name: str) -> tuple[Scene, SceneSolution] | None:
+    """Return a scene of the catalogue with its answer up to `LATER`, None where its first phase is shorter."""
+    scene = scene_of(scene_catalogue()[name].question)
+    answer = answer_of(scene, [0.0, LATER])
+    if answer.trajectory is None or len(answer.trajectory.time) < 2 or (answer.phases and len(answer.phases) > 1):
+        return None
+    return scene, answer
+
+
+@pytest.mark.parametrize("name", sorted(set(scene_catalogue()) - UNDECIDED))
+def test_what_is_said_to_be_conserved_stays(name: str) -> None:
+    found = later(name)
+    if found is None:
+        return
+    scene, answer = found
+    assert answer.equations is not None
+    for row, time in enumerate((0.0, LATER)):
+        columns = columns_at(scene, answer, row)
+        jets = {key: Jet(mpmath.mpf(x)) for key, x in answer.equations.constants.items()}
+        jets["t"] = Jet(mpmath.mpf(time), mpmath.mpf(1))
+        known = {text: evaluated(text, columns | jets) for text in shown(answer, columns)}
+        jets |= {key: known[text] for key, text in answer.equations.coordinates.items() if text in known}
+        for one in answer.equations.conserved:
+            if set(names_in(one.formula.plain, answer)) <= set(jets):
+                value = float(evaluated(one.formula.plain, jets).value)
+                assert value == pytest.approx(one.value, rel=1e-7, abs=1e-7), (one.name, row)
+
+
+@pytest.mark.parametrize("name", sorted(set(scene_catalogue()) - UNDECIDED))
+def test_closed_forms_are_the_motion(name: str) -> None:
+    found = later(name)
+    if found is None:
+        return
+    scene, answer = found
+    assert answer.equations is not None
+    columns = columns_at(scene, answer, 1)
+    jets = {key: Jet(mpmath.mpf(x)) for key, x in answer.equations.constants.items()}
+    jets["t"] = Jet(mpmath.mpf(LATER), mpmath.mpf(1))
+    for key, formula in answer.equations.closed_form.items():
+        text = answer.equations.coordinates[key]
+        if text is not None and set(names_in(text, answer)) <= {*columns, *jets}:
+            there = evaluated(text, columns | jets)
+            moved = evaluated(formula.plain, jets)
+            assert float(moved.value) == pytest.approx(float(there.value), rel=1e-10, abs=1e-10), key
+            assert float(moved.rate) == pytest.approx(float(there.rate), rel=1e-8, abs=1e-8), key
+
+
+def shown(answer: SceneSolution, columns: Mapping[str, Jet]) -> list[str]:
+    """Return the formulas of coordinates that these columns suffice for."""
+    assert answer.equations is not None
+    texts = [text for text in answer.equations.coordinates.values() if text is not None]
+    return [text for text in texts if set(names_in(text, answer)) <= {*columns, *answer.equations.constants}]
+
+
+def names_in(text: str, answer: SceneSolution) -> list[str]:
+    """Return the names in a formula, without primes."""
+    found = re.findall(r"[A-Za-z][A-Za-z0-9_]*(?:-[A-Za-z0-9_]+)*(?:\.[A-Za-z][\w-]*)*(?!\w*\()", text)
+    functions = {"sin", "cos", "sqrt", "exp", "atan2"}
+    return [name for name in found if name not in functions]
