@@ -9,6 +9,7 @@ from math import inf
 from flint import arb_mat
 
 from core.errors import AccuracyUnreachable, InvalidParameter
+from core.multibody.algebra.large_systems import LARGE, solved_from_doubles
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, entry, evaluated, is_zero
 from core.multibody.algebra.rank import Elimination, independent
 from core.multibody.laws.series import values_at
@@ -109,19 +110,20 @@ def accelerations(table: Table) -> tuple[list[Ball], list[int]]:
     size = count + len(chosen)
     if not size:
         return [], []
-    entries = [[ZERO] * size for _ in range(size)]
+    entries: dict[tuple[int, int], Ball] = {}
     for (i, j), value in table.mass.items():
-        entries[i][j] = entries[j][i] = value
+        entries[i, j] = entries[j, i] = value
     for k, r in enumerate(chosen):
-        for j, value in lines[r].items():
-            entries[count + k][j] = value
-        for j, value in table.rows[r].pushed(table.q).items():
-            entries[j][count + k] = -value
+        entries.update({(count + k, j): value for j, value in lines[r].items()})
+        entries.update({(j, count + k): -value for j, value in table.rows[r].pushed(table.q).items()})
     right = [*table.forces(), *(table.convective(table.rows[r]) for r in chosen)]
-    try:
-        solved = arb_mat(entries).solve(arb_mat([[x] for x in right])).entries()
-    except ZeroDivisionError:
-        raise weightless(table, range(count), lines) from None
+    solved = solved_from_doubles(entries, right) if size >= LARGE else None
+    if solved is None:
+        matrix = arb_mat([[entry(entries, (i, j)) for j in range(size)] for i in range(size)])
+        try:
+            solved = matrix.solve(arb_mat([[x] for x in right])).entries()
+        except ZeroDivisionError:
+            raise weightless(table, range(count), lines) from None
     return solved[:count], chosen
 
 
