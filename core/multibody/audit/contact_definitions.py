@@ -46,6 +46,9 @@ def touch_of(
 def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a contact."""
     touch = touch_of(reader, name, path, connection.restitution, connection.friction, connection.impacts)
+    if connection.tangential_restitution is not None:
+        back = reader.number(connection.tangential_restitution, (*path, "tangential_restitution"))
+        touch = replace(touch, tangential=back)
     if connection.measure == "turn":
         least = connection.at_least is not None
         field = "at_least" if least else "at_most"

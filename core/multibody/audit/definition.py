@@ -280,6 +280,8 @@ class Touch:
     static, kinetic, restitution : float
     friction : tuple of str
         Names of the forces of friction: none, one in the plane, three in space.
+    tangential : float
+        Share of the slip that an impact turns back.
     law : str
         Of its impacts: "newton", "poisson" or "stronge".
     """
@@ -289,3 +291,4 @@ class Touch:
     restitution: float
     friction: tuple[str, ...]
     law: str = "newton"
+    tangential: float = 0.0

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.multibody.answer import SceneSolution
+from core.multibody.audit.definition import Touch
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.energy import kinetic
 from core.multibody.audit.failure import MARGIN, Ledger
@@ -35,6 +36,9 @@ KNOWN = 2.0**-36
 
 WEIGHTS = 7.0
 """Sum of the sizes of the weights of an extrapolation, by which it multiplies the errors of samples."""
+
+CONE = 2.0**-20
+"""Share of the largest friction beside which an impulse of it is below that: more than its error."""
 
 ROWS = 6
 """Samples of an impact."""
@@ -168,6 +172,30 @@ class Impacts:
                     off = np.minimum(after, 0.0)
                 times = np.array([self.groups[k][0].time for k in rows])
                 ledger.compare("restitution", connection.name, times, off, MARGIN * known[rows])
+                if touch.law == "newton" and touch.friction:
+                    first, then = (
+                        connection.slips(side.placement, side.motion)[force].reshape(len(known), -1)[rows]
+                        for side in sides
+                    )
+                    left = np.abs(then + touch.tangential * first).max(axis=1)
+                    # Friction at its limit may not suffice.
+                    held = np.array([_within_its_cone(self.groups[k][0], touch) for k in rows])
+                    bounced = np.abs(after) > MARGIN * known[rows]
+                    ledger.compare(
+                        "tangential restitution",
+                        connection.name,
+                        times,
+                        np.where(held & (bounced | (touch.restitution == 0.0)), left, 0.0),
+                        MARGIN * known[rows],
+                    )
+
+
+def _within_its_cone(event: MotionEvent, touch: Touch) -> bool:
+    """Return whether the friction of an impact is known to be less than it might be."""
+    if any(error is None for error in event.errors.impulses.values()):
+        return False
+    rubs = [value for name, value in event.impulses.items() if name != "normal"]
+    return float(np.linalg.norm(rubs)) < touch.kinetic * event.impulses["normal"] * (1.0 - CONE)
 
 
 def _accumulates(answer: SceneSolution, time: float, step: float) -> bool:

@@ -232,7 +232,7 @@ def _shares(
         before = gap_rate(one, q, v)
         if one.law != "newton" or is_zero(gap_rate(one, q, after) + (one.restitution * before if before < 0 else ZERO)):
             lines.append(found.normal[i])
-            if one.slips and is_zero(slip_rate(one, q, after)):
+            if one.slips and is_zero(slip_rate(one, q, after) + one.tangential * slip_rate(one, q, v)):
                 lines.extend(found.grip(i))
     if len(lines) < 2:
         return False

@@ -2,7 +2,8 @@
 
 With p the impulses along gaps, s along slips: p >= 0 and the gap opens at e times the rate at which it closed, or p = 0
 and it opens faster; where p > 0, either the slip stops and |s| <= mu p, or s = -sigma mu p and the slip has the sign
-sigma. The rates afterwards are r + A (p, s), with Delassus' operator A.
+sigma. With a tangential restitution e_t what stops, or has the sign, is the slip afterwards and e_t times that before.
+The rates afterwards are r + A (p, s), with Delassus' operator A.
 
 References
 ----------
@@ -142,8 +143,9 @@ def _ways(
         impulses = _solved(unilateral, group, states, rates, found, {i: direction})
         if impulses is None:
             return None
-        then = rates_after(impulses, rates, found)
-        return then[found.slips[i]], then[found.across[i]]
+        then, one = rates_after(impulses, rates, found), unilateral[i]
+        first, second = (then[line] + thrown_back(one, i, line, rates, found) for line in found.grip(i))
+        return first, second
 
     return [{i: direction} for direction in directions(after)]
 
@@ -165,6 +167,9 @@ def _solved(
         a = found.normal[i]
         if a in wanted:
             wanted[a] = wanted[a] - _rebound(unilateral[i], rates[a])
+        for line in found.grip(i):
+            if line in wanted:
+                wanted[line] = wanted[line] - thrown_back(unilateral[i], i, line, rates, found)
     try:
         solved = arb_mat(found.among(unknowns, held)).solve(arb_mat([[wanted[a]] for a in held])).entries()
     except ZeroDivisionError:
@@ -179,6 +184,11 @@ def _solved(
 def _rebound(one: Unilateral, closing: Ball) -> Ball:
     """Return e times the rate of a gap before an impact, below zero; zero where the gap does not close."""
     return one.restitution * closing if closing < 0 else ZERO
+
+
+def thrown_back(one: Unilateral, i: int, line: int, rates: RatesByLine, found: Responses) -> Ball:
+    """Return the share of a slip before an impact that friction turns back; zero where the gap does not close."""
+    return one.tangential * rates[line] if rates[found.normal[i]] < 0 else ZERO
 
 
 def _holds(
@@ -198,16 +208,17 @@ def _holds(
     push = impulses[a]
     if not _at_least_zero(push) or not is_zero(after[a] + _rebound(one, rates[a])):
         return False
+    slip = {line: after[line] + thrown_back(one, i, line, rates, found) for line in found.grip(i)}
     if state is State.STICK:
         # Impulses that cannot be told from zero are zero: then what they would have to stop may be known to go on.
-        return all(is_zero(after[line]) for line in found.grip(i)) and all(
+        return all(map(is_zero, slip.values())) and all(
             _at_least_zero(x) for x in grips(one.static * push, [impulses[line] for line in found.grip(i)])
         )
     if state.sense and i in ways:
         c, s = ways[i]
-        return _at_least_zero(c * after[found.slips[i]] + s * after[found.across[i]])
+        return _at_least_zero(c * slip[found.slips[i]] + s * slip[found.across[i]])
     if state.sense:
-        return _at_least_zero(state.sense * after[found.slips[i]])
+        return _at_least_zero(state.sense * slip[found.slips[i]])
     return True
 
 

@@ -76,7 +76,8 @@ class Contact(SurfaceConnection):
     pass `b`, of which one has a rim or a shape at least. Or with `measure` "turn", the turn of `a` relative to `b`
     stays `at_least` or `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order`
     says, where several impacts at once leave their outcome open, in which order they happen: those of equal order
-    together. `impacts` is the law of its impacts, that of the scene if left out.
+    together. `impacts` is the law of its impacts, that of the scene if left out. `tangential_restitution` is the share
+    of its slip that an impact turns back where friction suffices.
     """
 
     place: Place | None = None
@@ -88,6 +89,7 @@ class Contact(SurfaceConnection):
     at_most: Number | None = None
     friction: Number | Sequence[Number] | None = None
     restitution: Number | None = None
+    tangential_restitution: Number | None = None
     order: Number | None = None
     impacts: ImpactLaw | None = None
     name: str | None = None

@@ -245,7 +245,7 @@ class _Run:
         self.motion.impacts.extend((len(self.motion.phases), name, left_out) for name in names)
         # They come to rest together.
         return [
-            replace(one, restitution=ZERO, order=ZERO) if i in settling else one
+            replace(one, restitution=ZERO, tangential=ZERO, order=ZERO) if i in settling else one
             for i, one in enumerate(self.unilateral)
         ], settling
 

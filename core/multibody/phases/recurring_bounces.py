@@ -211,6 +211,9 @@ def _ratio(one: Unilateral, found: Responses, opening: Ball, closing: Ball, gain
     """
     e = one.restitution
     (nn, nt), (tn, tt) = (line[:2] for line in found.matrix[:2])
+    if is_zero(slip) and not is_zero(one.tangential):
+        # What slips during an arc is turned back at its end: the next impulse is another.
+        return ZERO if is_zero(gain) and is_zero(tn) else None
     if is_zero(slip):
         # It slips during an arc, and stops at its end: by as much less, every time, as the arc is shorter.
         share = 2 * gain / (closing * (1 + e))

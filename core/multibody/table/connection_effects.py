@@ -158,6 +158,8 @@ class Unilateral:
         Whether sticking is rolling.
     order : ball or None
         Place in the order of simultaneous impacts.
+    tangential : ball
+        Share of the slip that an impact turns back where friction suffices.
     law : str
         Of its impacts: "newton", "poisson" or "stronge".
     whole : str or None
@@ -184,6 +186,7 @@ class Unilateral:
     across: LinearForm | None = None
     tangents: tuple[Sequence[Ball], Sequence[Ball]] | None = None
     law: ImpactLaw = "newton"
+    tangential: Ball = ZERO
     whole: str | None = None
     facets: tuple[Facet, ...] = ()
     region: tuple[Poly, ...] = ()

@@ -39,7 +39,8 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
             "be newton where a contact in space has friction: its slip turns while the impulse acts",
             remedy='leave out the friction, or take "newton" for this contact',
         )
-    common = Unilateral(name, {}, None, static, kinetic, restitution, order=order, law=law)
+    tangential = _tangential(measures, connection, path, rubs=rubs and law == "newton")
+    common = Unilateral(name, {}, None, static, kinetic, restitution, order=order, law=law, tangential=tangential)
     if measures.dimension == 3:
         found = [
             replace(
@@ -92,6 +93,23 @@ def bounciness(measures: Measures, connection: Contact | String, path: Path) -> 
     if connection.order is not None:
         order = measures.numerals.number(connection.order, (*path, "order"))
     return restitution, order
+
+
+def _tangential(measures: Measures, connection: Contact, path: Path, *, rubs: bool) -> Ball:
+    """Return the share of a slip that an impact turns back; friction does so, by Newton's law."""
+    if connection.tangential_restitution is None:
+        return ZERO
+    where = (*path, "tangential_restitution")
+    share = measures.numerals.number(connection.tangential_restitution, where)
+    if share < 0 or share > 1:
+        raise InvalidParameter(where, "be at least 0 and at most 1", remedy="0 lets it stick, 1 turns all of it back")
+    if not rubs:
+        raise InvalidParameter(
+            where,
+            "be left out of a contact without friction, and of one whose impacts are not by Newton's law",
+            remedy='give its friction, and "impacts": "newton"',
+        )
+    return share
 
 
 def coefficients_of_friction(measures: Measures, value: object, path: Path) -> tuple[Ball, Ball]:

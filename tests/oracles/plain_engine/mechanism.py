@@ -94,6 +94,8 @@ class Rows:
         Of the measures (m, rad); zero of what holds rates alone.
     rates, gains, driven : ndarray, shape (m,)
         The forms at the present rates, what these gain, and the forms without any motion.
+    tangential : sequence of float
+        Restitution of the slip of each measure.
     """
 
     owners: list[Owner]
@@ -102,16 +104,18 @@ class Rows:
     rates: Floats
     gains: Floats
     driven: Floats
+    tangential: Sequence[float]
 
     def of(self, what: str, number: int) -> list[int]:
         """Return where the rows of an owner are."""
         return [k for k, owner in enumerate(self.owners) if owner == (what, number)]
 
     def after(self, restitution: Mapping[int, float]) -> Floats:
-        """Return the gains of an impact: none of what holds, the rates of slips and gaps, 1 + e times if they close."""
+        """Return the gains of an impact: none of what holds; rates of slips and gaps, 1 + e times if these close."""
+        closing = {i for (what, i), rate in zip(self.owners, self.rates, strict=True) if what == "push" and rate < 0.0}
         factors = [
-            0.0 if what == "held" else 1.0 + restitution[i] if what == "push" and rate < 0.0 else 1.0
-            for (what, i), rate in zip(self.owners, self.rates, strict=True)
+            0.0 if what == "held" else 1.0 + (restitution if what == "push" else self.tangential)[i] * (i in closing)
+            for what, i in self.owners
         ]
         found: Floats = np.array(factors) * self.rates
         return found
@@ -177,6 +181,7 @@ class Mechanism:
             rates[n + 1],
             (_WEIGHTS @ rates[n + 2 :]) / h,
             driven,
+            [one.touch.tangential for one in one_sided],
         )
 
     def rough(self, numbers: Iterable[int]) -> list[int]:

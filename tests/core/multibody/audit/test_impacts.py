@@ -93,3 +93,17 @@ def test_each_of_eight_impacts_is_compared() -> None:
             replace(event, energy_loss=1e-3) if k == wrong else event for k, event in enumerate(one.answer.events)
         )
         assert replace(one, answer=replace(one.answer, events=events)).failure() is not None
+
+
+def test_another_tangential_restitution_is_refused() -> None:
+    def bouncing(share: float) -> dict[str, Any]:
+        ball = {"mass": 1, "radius": 0.1, "inertia": 0.004, "at": [0, 0.5], "velocity": [1, 0], "angular_velocity": 0}
+        floor = {"kind": "contact", "place": "ball", "on": {"at": [0, 0]}, "restitution": 0.75, "friction": 3}
+        floor["tangential_restitution"] = share
+        return {"gravity": [0, -10], "bodies": {"ball": ball}, "connections": [floor]}
+
+    one, wrong = (answered(bouncing(share), [0.0, 0.3, 0.5]) for share in (0.5, 0.5001))
+    assert one.failure() is None
+    failure = Audited(one.scene, wrong.answer, wrong.sampler, one.times).failure()
+    assert failure is not None
+    assert failure.law == "tangential restitution"
