@@ -38,6 +38,8 @@ MOST_EVALUATIONS = 100
 POLISHED = 1e-4
 """Last step, in standard errors; what remains is less, and is part of the model's error."""
 MOST_POLISHING = 6
+LOST = 1e-12
+"""Share of a loss below which two losses cannot be told apart: a sum of squares of ten thousand rows rounds by it."""
 
 
 def scipy_module(name: str) -> Any:
@@ -123,25 +125,29 @@ def least(problem: Problem, start: Floats) -> tuple[Floats, float]:
 
 
 def polished(problem: Problem, numbers: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the numbers after further steps with accurate slopes, the slopes, and the last step.
+    """Return the numbers after further steps with accurate slopes, the slopes, and how far the least loss may be.
 
     A number at an end of its range stays there. Slopes are formed anew for each step: with large residuals it is their
-    change that decides where the least loss is.
+    change that decides where the least loss is. Steps shrink by at least half each, or are not taken, since near the
+    least loss the losses themselves are rounded: what follows a step is then no more than the step, and what follows
+    one before which the search ends no more than the step twice.
     """
     held = problem.at_ends(numbers)
     residuals = problem.residuals(numbers)
+    longest = np.inf
     for _ in range(MOST_POLISHING):
         slopes = problem.slopes(numbers, central=True)
         cost = problem.cost(residuals)
         weights = np.sqrt(problem.rho(residuals**2)[1])[:, None]
         scaled = np.where(held, 0.0, slopes * problem.scales) * weights
         change = -np.linalg.lstsq(scaled, residuals * weights[:, 0], rcond=problem.slope_error)[0]
+        length = float(np.linalg.norm(scaled @ change))
         after = np.clip(numbers + change * problem.scales, problem.lower, problem.upper)
         found = problem.finite_residuals(after)
-        if not problem.cost(found) <= cost:
-            break
-        numbers, residuals = after, found
+        if not (length <= longest and problem.cost(found) <= cost + LOST * cost):
+            return numbers, slopes, 2.0 * np.abs(change * problem.scales)
+        numbers, residuals, longest = after, found, 0.5 * length
         deviation = 1.0 if problem.data.deviations is not None else (cost / problem.rows) ** 0.5
-        if np.linalg.norm(scaled @ change) <= POLISHED * deviation:
+        if length <= POLISHED * deviation:
             break
     return numbers, slopes, np.abs(change * problem.scales)
