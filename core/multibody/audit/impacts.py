@@ -236,9 +236,13 @@ def _extrapolated(samples: Samples, first: int) -> _Side:
     def bend(x: Numbers | None, error: Numbers) -> Numbers:
         if x is None:
             return np.zeros(len(error[near]))
-        bent = np.abs(x[near] - 2.0 * x[next_to] + x[far])
-        known: Numbers = bent.reshape(len(bent), -1).max(axis=1) + WEIGHTS * error[near]
+        changes = (x[near] - 2.0 * x[next_to] + x[far], x[near] - x[next_to])
+        bent, changed = (np.abs(one).reshape(len(one), -1).max(axis=1) for one in changes)
+        known: Numbers = bent + WEIGHTS * (error[near] + late * changed)
         return known
+
+    # Times are doubles: of the step between two samples a share is rounding.
+    late = np.spacing(np.abs(samples.times[near])) / np.abs(samples.times[next_to] - samples.times[near])
 
     placement, motion, unsure = {}, {}, {}
     for name, pose in samples.placement.items():

@@ -210,10 +210,10 @@ class Followed:
             raise AccuracyUnreachable(None, math.inf, what, path=("times",))
         pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
         cut = [np.where(each.cut, each.natural, np.inf) for each in pieces]
-        if np.isfinite(cut).any():
-            # Computations that are a little apart have a corner at different times, and one of them a short piece.
-            shortest = np.minimum.reduce([np.abs(each.lengths) for each in pieces])
-            pieces = [each.shortened(shortest) for each in pieces]
+        shortest = np.minimum.reduce([np.abs(each.lengths) for each in pieces])
+        # Computations that are a little apart may have corners at different times, or models of which one holds for
+        # ever: how far they are apart is known as long as both hold.
+        pieces = [each if np.all(np.abs(each.lengths) == shortest) else each.shortened(shortest) for each in pieces]
         lengths = np.abs(pieces[0].lengths)
         if not np.isfinite(lengths).all():
             raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))

@@ -255,3 +255,37 @@ def test_a_weight_that_reaches_its_peg_after_a_jerk_ends_the_motion_there() -> N
     answer = solve_scene(read(scene), [0.5])
     assert kinds(answer) == [("taut", "cord"), ("singular", "cord")]
     assert [one.time for one in answer.events] == pytest.approx([taut, then.t_events[0][0]], abs=1e-8)
+
+
+@pytest.mark.parametrize("heavy", ["1.01", "1.0001"])
+@pytest.mark.parametrize("space", [False, True])
+def test_masses_on_a_string_above_a_floor_come_down_again_and_again(heavy: str, space: bool) -> None:
+    """In space one computation of the motion has constant accelerations, and the other, a rounding beside it, a series.
+
+    The heavier lands with v, the lighter flies on and is back after 2 v/g; then both go on with v/(1 + m), and the
+    heavier comes down again after 2 v/(1 + m) over the acceleration of the machine.
+    """
+
+    def at(x: float, y: float) -> list[float]:
+        return [x, 0.0, y] if space else [x, y]
+
+    floor = {"at": at(0, 0), **({"normal": [0, 0, 1]} if space else {})}
+    scene = {
+        "gravity": at(0, -9.81),
+        "bodies": {"a": {"mass": 1, "at": at(-0.5, 2)}, "b": {"mass": heavy, "at": at(0.5, 2)}},
+        "connections": [
+            {"kind": "string", "name": "s", "through": ["a", at(-0.5, 5), at(0.5, 5), "b"], "restitution": 0},
+            {"kind": "contact", "name": "floor", "place": "b", "on": floor},
+        ],
+    }
+    mass, expected = float(heavy), []
+    pull = 9.81 * (mass - 1.0) / (mass + 1.0)
+    time, speed = np.sqrt(4.0 / pull), np.sqrt(4.0 * pull)
+    for _ in range(10):
+        expected.append(time)
+        time, speed = time + 2.0 * speed / 9.81, speed / (1.0 + mass)
+        time += 2.0 * speed / pull
+    answer = solve_scene(read(scene), [1.0, 1000.0], ("trajectory", "energy"))
+    landed = [event.time for event in answer.events if event.kind == "touch"][:10]
+    assert landed == pytest.approx(expected, rel=1e-12)
+    assert column(answer, "b.position").values[-1, -1] == pytest.approx(0.0, abs=1e-9)
