@@ -261,6 +261,13 @@ class Whole:
         power = 2 * units.time - units.action
         return self._of_each_row(max((float(np.ldexp(x, units.lengths[i] + power)) for i, x in terms), default=0.0))
 
+    def largest_rates(self, v: Floats) -> Floats:
+        """Return for every coordinate the largest rate among those of its unit: what cancels where its own is zero."""
+        lengths, largest = np.array(self.arrays[1].lengths), np.max(np.abs(v[..., 0]), axis=0, initial=0.0)
+        alike = lengths[:, None] == lengths
+        found: Floats = np.max(np.where(alike, largest, 0.0), axis=1, initial=0.0)
+        return found
+
     @property
     def _powers(self) -> Integers:
         """Exponents of two of the multiplier of every row."""

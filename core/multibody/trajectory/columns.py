@@ -99,7 +99,7 @@ class Columns:
         multipliers = self.whole.multipliers(q, v)
         # What should be zero is known no better than the largest of what is solved for with it and of what it balances.
         solved = self.whole.largest_multipliers(multipliers)
-        balanced = np.maximum(solved, self.whole.largest_forces(q, v))
+        balanced, rates = np.maximum(solved, self.whole.largest_forces(q, v)), self.whole.largest_rates(v)
         by_reference = None
         if self.states.reference is not None:
             by_reference = (*self.states.reference, self.whole.multipliers(*self.states.reference))
@@ -113,7 +113,8 @@ class Columns:
             beside = sum(float(solved[row]) * factor for row, factor in factors)
             floor = sum(float(balanced[row]) * factor for row, factor in factors)
             error = _SMALL * sizes[force.name] + _SOLVED * floor + float(moved[k])
-            sizes[force.name] = max(sizes[force.name], floor)
+            beyond = sum(abs(float(x)) * rates[j] for j, x in force.of_rates.items())
+            sizes[force.name] = max(sizes[force.name], floor, float(beyond))
             if by_reference is not None:
                 other = self.whole.force(force, *by_reference)[0]
                 error += 4.0 * largest_magnitude(values - other)

@@ -188,12 +188,6 @@ class Mechanism:
         """Return those of some measures that have friction."""
         return [i for i in numbers if self.one_sided[i].slips]
 
-    def gains_of_gaps(self, state: State, numbers: Sequence[int], accelerations: Floats) -> Floats:
-        """Return the second derivatives of gaps, shape (k,)."""
-        rows = self.rows(state, numbers)
-        found: Floats = rows.lines @ accelerations + rows.gains
-        return found[[rows.of("push", i)[0] for i in numbers]]
-
     def _shortest(self, state: State) -> float:
         """Return the length (m) of the shortest rod or straight part, whose direction turns most for a move."""
         placement = self.coordinates.placement(state) if self.straights else {}

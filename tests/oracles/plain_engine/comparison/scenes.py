@@ -98,7 +98,8 @@ def _tie(draw: Draw, units: list[Unit]) -> list[Json]:
         return []
     a, b = (draw.one(unit.ends) for unit in units)
     kind = draw.one(("spring", "spring", "damper", "gravitation", "inverse-square", "string"))
-    if kind == "string" and any("radius" in unit.bodies.get(end, {}) for unit, end in zip(units, (a, b), strict=True)):
+    wound = [{"radius", "shape"} & set(unit.bodies.get(end, {})) for unit, end in zip(units, (a, b), strict=True)]
+    if kind == "string" and any(wound):
         # It would wind around them.
         kind = "spring"
     if kind == "spring":

@@ -52,7 +52,7 @@ def struck(draw: Draw) -> Unit:
 
 
 def stacked(draw: Draw) -> Unit:
-    """Return a box on a plank, of which one slides, or one box on another, that falls over its end."""
+    """Return a box that slides along a plank, on a guide or on a floor, and may fall over its end."""
     a, b = draw.name("plank"), draw.name("box")
     bodies: Json = {
         a: {"mass": draw.mass(), "shape": {"kind": "box", "width": 1, "height": 0.1}, "at": draw.at(0, 0.05)},
@@ -60,11 +60,19 @@ def stacked(draw: Draw) -> Unit:
     }
     bodies[a] |= {"velocity": [0, 0], "angular_velocity": 0}
     bodies[b] |= {"velocity": [draw.one((0, 1, 2)), 0], "angular_velocity": 0}
-    floor = {"kind": "contact", "name": draw.name("floor"), "place": a, "on": {"at": draw.at(0, 0)}}
-    top = {"kind": "contact", "name": draw.name("top"), "a": b, "b": a}
-    rough = draw.one((floor, top, top))
-    rough["friction"] = draw.one((0.1, 0.3, 0.4))
-    return Unit(bodies, [floor, top], [b])
+    top: Json = {"kind": "contact", "name": draw.name("top"), "a": b, "b": a, "friction": draw.one((0.1, 0.3, 0.4))}
+    below: Json = {"kind": "slider", "name": draw.name("guide"), "a": a, "b": draw.at(0, 0.05), "slope": 0}
+    if draw.chance(0.2):
+        # A load on four corners, of which two carry it, takes the plain engine long.
+        top["friction"] = 0
+        below = {
+            "kind": "contact",
+            "name": draw.name("floor"),
+            "place": a,
+            "on": {"at": draw.at(0, 0)},
+            "friction": 0.3,
+        }
+    return Unit(bodies, [below, top], [b])
 
 
 def shape_in_space(draw: Draw) -> Unit:
