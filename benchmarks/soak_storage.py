@@ -59,10 +59,11 @@ def small_disk(folder: str) -> bool:
 
 def fill(soak: Soak, seed: int) -> None:
     """Fill the small file system for some seconds now and then; kill what works on studies in between."""
-    draw, filler = random.Random(seed), soak.folder / "filler"
+    draw, filler, killed = random.Random(seed), soak.folder / "filler", 0.0
     while time.monotonic() < soak.until:
         time.sleep(draw.uniform(5.0, 25.0))
-        if draw.random() < 0.3:
+        if draw.random() < 0.3 and stored_since(soak.folder / "studies", killed):
+            killed = time.time()
             for child in children(soak.server.pid):
                 with contextlib.suppress(OSError):
                     if b"service.studies.runner" in Path(f"/proc/{child}/cmdline").read_bytes():
@@ -75,6 +76,16 @@ def fill(soak: Soak, seed: int) -> None:
             time.sleep(draw.uniform(2.0, 6.0))
             filler.unlink()
             soak.outcomes["fault: full disk"] += 1
+
+
+def stored_since(folder: Path, moment: float) -> bool:
+    """Return whether results have been stored since some time (s): what is killed again before has not begun to work.
+
+    On a machine whose cores are busy a cluster may take longer to start than what passes between two kills.
+    """
+    with contextlib.suppress(OSError):
+        return any(file.stat().st_mtime > moment for file in folder.rglob("*"))
+    return False
 
 
 def studies(soak: Soak, seed: int) -> None:

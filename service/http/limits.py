@@ -40,9 +40,9 @@ def parameters_of(scope: Scope) -> dict[str, list[str]]:
     return parse_qs(query.decode("latin-1"), keep_blank_values=True) if query else {}
 
 
-def refuse_parameters(names: Iterable[str], rule: str) -> None:
+def refuse_parameters(names: Iterable[str], rule: str, remedy: str | None = None) -> None:
     """Refuse a request with parameters in its address that it must not have, if there are any."""
-    faults = [Fault(f"?{name[:LONGEST_PARAMETER]}", rule) for name in names]
+    faults = [Fault(f"?{name[:LONGEST_PARAMETER]}", rule, remedy) for name in names]
     if faults:
         raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
 

@@ -335,7 +335,8 @@ def _owner(context: RequestContext) -> str:
 def _query(context: RequestContext, known: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     """Return the parameters of the query, or refuse those that are not known or are repeated."""
     query, names = parameters_of(context.scope), [one["name"] for one in known]
-    refuse_parameters((name for name in query if name not in names), "is not known here")
+    unknown = (name for name in query if name not in names)
+    refuse_parameters(unknown, "is not known here", f"known here: {', '.join(names)}")
     refuse_parameters((name for name in query if len(query[name]) > 1), "must be given once")
     return {name: given for name, (given,) in query.items()}
 

@@ -661,6 +661,8 @@ async def test_studies_are_listed_in_pages_and_orders(tmp_path: Path) -> None:
         for query in ("sort=name", "count=0", "start=-1", "page=2", "count=1&count=2"):
             refused = await client.get(f"/v1/studies?{query}")
             assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "?" + query.partition("=")[0])
+        unknown = (await client.get("/v1/studies?limit=2")).json()["errors"][0]
+        assert unknown["remedy"] == "known here: start, count, sort"
 
 
 async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> None:
