@@ -151,7 +151,7 @@ class Grader:
         except EntryFault as fault:
             return self._result(pointer, Judgement("wrong-unit"), reference, why=[fault.sentence])
         if value is None and claim.value is not None:
-            return self._result(pointer, Judgement("missing-unit"), reference)
+            return self._result(pointer, Judgement("missing-unit"), reference, value=claim.value)
         comparison = self._comparison(pointer)
         try:
             judgement = compare(reference, value, comparison)
@@ -199,7 +199,7 @@ class Grader:
             return self._result(pointer, Judgement("wrong-unit"), reference, why=[fault.sentence])
         judged = self._agreeing(formula, path, reference, times)
         if bare and judged.judgement.verdict == "incorrect":
-            return self._result(pointer, Judgement("missing-unit"), reference)
+            return self._result(pointer, Judgement("missing-unit"), reference, value=judged.value)
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
             mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)

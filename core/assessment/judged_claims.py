@@ -40,7 +40,8 @@ class JudgedClaim:
     samples : tuple of (SampleErrors, Consistent or None), or None
         Of samples of the angular velocity that are not right.
     value : float or None
-        The number that is claimed, in the unit of the reference; None where there is none.
+        The number that is claimed, in the unit of the reference (also where the unit is missing, as a later answer may
+        follow from it); None where there is none.
     carried : float or None
         Share of the score for a number that follows from wrong earlier ones.
     """

@@ -149,6 +149,34 @@ def test_a_later_part_of_a_question_is_judged_from_the_earlier_one() -> None:
 
 
 @pytest.mark.parametrize(
+    ("tension", "light", "heavy", "verdicts"),
+    [
+        # Half of the tension: (7.3575 - 9.81) m/s^2, and the other mass the opposite.
+        ("7,3575 N", "-2,4525 m/s²", "2,4525 m/s²", ["incorrect", "carried", "carried"]),
+        ("7357,5 mN", "-2,4525 m/s²", "-2,4525 m/s²", ["incorrect", "carried", "incorrect"]),
+        ("-minus_g*m*M/(m + M)", "-2,4525 m/s²", "4,905 m/s²", ["incorrect", "carried", "incorrect"]),
+        ("7,3575", "-2,4525 m/s²", "2,4525 m/s²", ["missing-unit", "carried", "carried"]),
+        ("14,715", "4,905 m/s²", "-4,905 m/s²", ["missing-unit", "correct", "correct"]),
+        ("7,3575 kg", "-2,4525 m/s²", "2,4525 m/s²", ["wrong-unit", "incorrect", "carried"]),
+        ("7,3575 N", "-2,4525", "2,4525 m/s²", ["incorrect", "missing-unit", "carried"]),
+        ("0 N", "-9,81 m/s²", "9,81 m/s²", ["incorrect", "carried", "carried"]),
+        ("29,43 N", "4,905 m/s²", "-4,905 m/s²", ["incorrect", "correct", "correct"]),
+    ],
+)
+def test_errors_are_carried_through_a_chain_of_answers(
+    tension: str, light: str, heavy: str, verdicts: list[str]
+) -> None:
+    one, other = "/accelerations/light/linear/1", "/accelerations/heavy/linear/1"
+    steps = {
+        one: {"formula": "T/m + minus_g", "earlier": {"T": TENSION}},
+        other: {"formula": "-a", "earlier": {"a": one}},
+    }
+    submission = {TENSION: {"text": tension}, one: {"text": light}, other: {"text": heavy}}
+    (result,) = handled(ATWOOD, submission, steps=steps, names=NAMES, locale="de")["results"]
+    assert [test["verdict"] for test in result["tests"]] == verdicts
+
+
+@pytest.mark.parametrize(
     ("pointer", "step", "place"),
     [
         ("/accelerations/light/linear/1", {"formula": "2*T/m", "earlier": {"T": TENSION}}, "/formula"),
