@@ -69,7 +69,8 @@ def _extents(table: Table) -> list[Ball]:
 
 
 def _newton(table: Table, paths: Mapping[str, Path]) -> None:
-    rows = [row for row in table.rows if row.measure is not None]
+    # What follows from others keeps its tie to them to first order, and has its own value after every step.
+    rows = [*(row for row in table.rows if row.measure is not None), *(one.row for one in table.follows)]
     extents = _extents(table)
     sizes = [size(row.measure or {}, extents) for row in rows]
     for _ in range(_NEWTON_STEPS_OF_POSITIONS):
@@ -80,11 +81,12 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
         missed = max((float(abs(x) / y) for x, y in zip(residuals, sizes, strict=True) if y > 0), default=0.0)
         chosen = independent(lines, _APART * missed)
         step = least_change(table, [lines[i] for i in chosen], [residuals[i] for i in chosen])
-        table.q = [q - d for q, d in zip(table.q, step, strict=True)]
+        table.q = _followed(table, [q - d for q, d in zip(table.q, step, strict=True)])
         scale = max(float(abs(q)) for q in table.q)
         if max(float(abs(d)) for d in step) <= 2.0**-150 * scale:
             # Quadratic convergence: what is left is far below the last step.
-            table.q = [arb(q.mid(), max(float(abs(d)), 2.0**-280 * scale)) for q, d in zip(table.q, step, strict=True)]
+            q = [arb(q.mid(), max(float(abs(d)), 2.0**-280 * scale)) for q, d in zip(table.q, step, strict=True)]
+            table.q = _followed(table, q)
             break
     for row in rows:
         residual = evaluated(row.measure or {}, table.q)
@@ -92,6 +94,14 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
             raise InvalidParameter(
                 paths.get(row.name, ()), f'agree with the other connections: "{row.name}" cannot hold beside them'
             )
+
+
+def _followed(table: Table, q: list[Ball]) -> list[Ball]:
+    """Return coordinates of which those that follow from others do so."""
+    for one in table.follows:
+        for i, value in zip(one.indices, one.function(evaluated(one.argument, q)), strict=True):
+            q[i] = value
+    return q
 
 
 def least_change(table: Table, lines: Sequence[Line], residuals: Sequence[Ball]) -> list[Ball]:

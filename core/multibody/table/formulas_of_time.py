@@ -7,7 +7,7 @@ rate. What drives is then a row as any other: its force, its work and its motion
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from core.errors import InvalidParameter, Path
 from core.formulas import Node, value_of
@@ -29,7 +29,7 @@ from core.multibody.language.motion_formulas import TIME, motion_formula
 from core.multibody.language.numerals import BALLS
 from core.multibody.language.switches import SWITCHING
 from core.multibody.table.measures import Measures
-from core.multibody.table.table import Row
+from core.multibody.table.table import Following, Row
 
 LARGEST_PRODUCT = 16
 """Whole powers up to this are products, of four factors at most; others are powers of positive numbers."""
@@ -127,22 +127,29 @@ class FormulaRows:
                 sinh, cosh = combined((ONE / 2, up), (-ONE / 2, down)), combined((ONE / 2, up), (ONE / 2, down))
                 return {"sinh": sinh, "cosh": cosh}[kind] if kind != "tanh" else self._quotient(sinh, cosh)
             case "log":
-                return self._integral(self._value(first).log(), first, first)
+                return self._integral(_logarithm, first, first)
             case "asin" | "acos":
                 root = self._function("sqrt", [difference(constant(ONE), self._product(first, first))])
-                angle = self._integral(self._value(first).asin(), root, first)
+                angle = self._integral(_arc_sine, root, first)
                 return angle if kind == "asin" else difference(constant(ONE.pi() / 2), angle)
             case "atan":
                 square = combined((ONE, constant(ONE)), (ONE, self._product(first, first)))
-                return self._integral(self._value(first).atan(), square, first)
+                return self._integral(_arc_tangent, square, first)
         rule = "be a formula of time that has one piece" if kind in SWITCHING else f"do without {kind}"
         raise InvalidParameter(self.path, f"{rule} where it drives something")
 
-    def _require_timed(self, poly: Poly) -> None:
-        """Refuse functions of places whose rows hold rates alone: the start could not be put onto them."""
-        if not self._is_timed(poly):
+    def _follow(self, values: Callable[[Ball], Sequence[Ball]], argument: Poly) -> list[Poly]:
+        """Return coordinates that are functions of a polynomial, whose rate row is added next."""
+        if self.measures.sketch and not self._is_timed(argument):
             rule = "have sums, products, quotients, whole powers and square roots alone of what is no time"
-            raise InvalidParameter(self.path, rule)
+            raise InvalidParameter(self.path, rule, remedy="give the places exactly, without assemble")
+        return [self._coordinate(value, argument) for value in values(self._value(argument))]
+
+    def _tie(self, found: Sequence[Poly], values: Callable[[Ball], Sequence[Ball]], argument: Poly) -> None:
+        """Let the assembly of the start know of what coordinates the last row makes functions."""
+        if not self._is_timed(argument):
+            indices = tuple(key[0] for poly in found for key in poly)
+            self.table.follows.append(Following(indices, values, argument, self.table.rows[-1]))
 
     def _require_positive(self, poly: Poly) -> None:
         """Refuse roots and powers that have no rate at the start."""
@@ -199,9 +206,13 @@ class FormulaRows:
         whole = given.unique_fmpz()
         if whole is None or not 0 <= abs(int(whole)) <= LARGEST_PRODUCT:
             self._require_positive(base)
-            self._require_timed(base)
-            found = self._coordinate(self._value(base) ** given, base)
+
+            def values(x: Ball) -> list[Ball]:
+                return [x**given]
+
+            (found,) = self._follow(values, base)
             self._roll((base, found), (combined((-given, found)), base))
+            self._tie([found], values, base)
             return found
         found = constant(ONE)
         for bit in bin(abs(int(whole)))[2:]:
@@ -211,24 +222,44 @@ class FormulaRows:
 
     def _direction(self, angle: Poly) -> tuple[Poly, Poly]:
         """Return cosine and sine of an angle."""
-        self._require_timed(angle)
-        sine, cosine = (self._coordinate(x, angle) for x in self._value(angle).sin_cos())
+        sine, cosine = pair = self._follow(_sine_and_cosine, angle)
         self._hold(combined((ONE, product(cosine, cosine)), (ONE, product(sine, sine)), (-ONE, constant(ONE))))
         self._roll((cosine, sine), (combined((-ONE, sine)), cosine), (constant(-ONE), angle))
+        self._tie(pair, _sine_and_cosine, angle)
         return cosine, sine
 
     def _exponential(self, exponent: Poly) -> Poly:
-        self._require_timed(exponent)
-        found = self._coordinate(self._value(exponent).exp(), exponent)
+        (found,) = self._follow(_exponential, exponent)
         self._roll((constant(ONE), found), (combined((-ONE, found)), exponent))
+        self._tie([found], _exponential, exponent)
         return found
 
-    def _integral(self, value: Ball, slope: Poly, argument: Poly) -> Poly:
+    def _integral(self, values: Callable[[Ball], Sequence[Ball]], slope: Poly, argument: Poly) -> Poly:
         """Return what changes by the change of an argument over a slope."""
-        self._require_timed(argument)
-        found = self._coordinate(value, argument)
+        (found,) = self._follow(values, argument)
         self._roll((slope, found), (constant(-ONE), argument))
+        self._tie([found], values, argument)
         return found
+
+
+def _sine_and_cosine(x: Ball) -> Sequence[Ball]:
+    return x.sin_cos()  # type: ignore[no-any-return]
+
+
+def _exponential(x: Ball) -> Sequence[Ball]:
+    return [x.exp()]
+
+
+def _logarithm(x: Ball) -> Sequence[Ball]:
+    return [x.log()]
+
+
+def _arc_sine(x: Ball) -> Sequence[Ball]:
+    return [x.asin()]
+
+
+def _arc_tangent(x: Ball) -> Sequence[Ball]:
+    return [x.atan()]
 
 
 def _constant(poly: Poly) -> Ball:

@@ -9,7 +9,7 @@ is the derivative of nothing.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.multibody.algebra.polynomials import (
@@ -111,6 +111,25 @@ def _along(line: LinearForm, expressions: Sequence[Poly]) -> LinearForm:
     return {j: poly for j, poly in cleaned.items() if poly}
 
 
+@dataclass(frozen=True)
+class Following:
+    """Coordinates that are a function of a polynomial of others, which a rate row ties to that.
+
+    Attributes
+    ----------
+    indices : tuple of int
+    function : callable
+        From the value of the polynomial to those of the coordinates.
+    argument : polynomial
+    row : Row
+    """
+
+    indices: tuple[int, ...]
+    function: Callable[[Ball], Sequence[Ball]]
+    argument: Poly
+    row: Row
+
+
 @dataclass
 class Table:
     """The numbers of a scene.
@@ -130,6 +149,8 @@ class Table:
         Coordinates and rates at the start.
     timed : set of int
         Coordinates of which the time alone decides, so that no assembly of the start moves them.
+    follows : list of Following
+        Coordinates that are functions of others, each of those before it.
     """
 
     names: list[str] = field(default_factory=list)
@@ -144,6 +165,7 @@ class Table:
     q: list[Ball] = field(default_factory=list)
     v: list[Ball] = field(default_factory=list)
     timed: set[int] = field(default_factory=set)
+    follows: list[Following] = field(default_factory=list)
 
     def independent_rows(self) -> list[int]:
         """Return the numbers of rows on which all others depend at the start, in order."""

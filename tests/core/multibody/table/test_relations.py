@@ -93,10 +93,76 @@ def test_places_that_are_rounded_are_put_onto_a_relation() -> None:
     np.testing.assert_allclose(place[:, 1], place[:, 0] ** 3, atol=1e-16)
 
 
+def test_a_bead_on_a_helix() -> None:
+    """x + i y = exp(3 i z): s' = sqrt(10) z', so that z'' = -g/10."""
+    bead = {"gravity": [0, 0, -10], "bodies": {"p": {"mass": 2, "at": [1, 0, 0]}},
+            "connections": [relation("p.x", "cos(3*p.z)"), relation("p.y", "sin(3*p.z)") | {"name": "s"}]}  # fmt: skip
+    found = answer(bead)
+    (place,) = columns(found, "p.position")
+    z = -(TIMES**2) / 2
+    np.testing.assert_allclose(place, np.stack([np.cos(3 * z), np.sin(3 * z), z], axis=1), atol=4e-15)
+
+
+WIRES = {
+    "sine": ("sin(3*p.x)/10", "0.2"),
+    "catenary": ("cosh(p.x)", "1"),
+    "bell": ("-exp(-p.x^2)", "0.5"),
+    "arc tangent": ("p.x^2 + atan(p.x)", "0.5"),
+    "logarithm": ("-log(1 + p.x)", "0.5"),
+    "power": ("(1 + p.x^2)^(2/3)", "0.5"),
+    "arc sine": ("p.x^2 - asin(p.x/4)", "0.5"),
+}
+
+
+@pytest.mark.parametrize("wire", WIRES)
+def test_a_bead_on_a_wire_keeps_its_energy_and_stays_on_it(wire: str) -> None:
+    """The energy at the start is that of the height; the place on the wire is compared with the formula itself."""
+    formula, x = WIRES[wire]
+    found = answer(point(x, formula.replace("p.x", x), relation("p.y", formula)))
+    place, velocity = columns(found, "p.position", "p.velocity")
+    functions = {name: getattr(np, name) for name in ("sin", "cosh", "exp", "log")}
+    functions |= {"atan": np.arctan, "asin": np.arcsin}
+
+    def height(u: Any) -> Any:
+        return eval(formula.replace("p.x", "u").replace("^", "**"), functions | {"u": u})
+
+    np.testing.assert_allclose(place[:, 1], height(place[:, 0]), atol=1e-14)
+    slope = np.imag(height(place[:, 0] + 1e-30j)) / 1e-30
+    np.testing.assert_allclose(velocity[:, 1], slope * velocity[:, 0], atol=1e-13)
+    np.testing.assert_allclose((velocity**2).sum(axis=1) / 2 + 10 * place[:, 1], 10 * place[0, 1], atol=1e-13)
+    assert found.trajectory is not None
+    assert found.trajectory.columns["p.position"].error < 1e-12
+
+
+def test_a_slotted_bar_follows_the_cosine_of_a_crank() -> None:
+    crank = {"mass": 1, "inertia": "0.1", "at": ["0.5", 0], "places": {"top": ["-0.5", 0]}}
+    guide = {"kind": "slider", "a": "p", "b": [0, 1], "slope": 0}
+    scene = point(
+        "0.3", 1, {"kind": "pin", "a": "crank.top", "b": [0, 0]}, guide, relation("p.x", "0.3*cos(crank.angle)")
+    )
+    scene["bodies"]["crank"] = crank
+    place, angle = columns(answer(scene), "p.position", "crank.angle")
+    np.testing.assert_allclose(place[:, 0], 0.3 * np.cos(angle), atol=1e-15)
+
+
+def test_rounded_places_are_put_onto_a_curve_and_its_functions_follow() -> None:
+    found = answer(point("0.2", "0.0564642473", relation("p.y", "sin(3*p.x)/10")), ("trajectory",))
+    (place,) = columns(found, "p.position")
+    np.testing.assert_allclose(place[:, 1], np.sin(3 * place[:, 0]) / 10, atol=1e-16)
+
+
+def test_a_sketch_is_not_put_onto_functions_of_places() -> None:
+    sketch = point(1, 0, relation("p.y", "sin(p.x)")) | {"assemble": "nearest"}
+    with pytest.raises(InvalidParameter, match="square roots alone"):
+        answer(sketch)
+    with pytest.raises(PlacesDisagree):
+        answer(point(1, 0, relation("p.y", "sin(p.x)")))
+
+
 @pytest.mark.parametrize(
     ("of", "equals", "rule", "pointer"),
     [
-        ("p.y", "sin(p.x)", "whole powers and square roots alone", "equals"),
+        ("p.y", "abs(p.x)", "one piece", "equals"),
         ("p.y", "p.vx", 'unlike "p.vx"', "equals"),
         ("p.z", 0, 'unlike "p.z"', "of"),
         ("3*t", 0, "name places or angles", "of"),
