@@ -17,7 +17,19 @@ ROOT = Path(__file__).parents[2]
 SCENES = scene_catalogue()
 PLANE = [name for name, one in SCENES.items() if len(next(iter(one.question["bodies"].values()))["at"]) != 3]
 
-MASSES = ("mass", "inertia", "moments", "stiffness", "coefficient", "strength", "force", "torque", "law", "density")
+MASSES = (
+    "mass",
+    "inertia",
+    "moments",
+    "tensor",
+    "stiffness",
+    "coefficient",
+    "strength",
+    "force",
+    "torque",
+    "law",
+    "density",
+)
 MIRRORED = {"left": "right", "right": "left"}
 
 

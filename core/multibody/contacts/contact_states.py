@@ -184,8 +184,10 @@ def forces_of(unilateral: Sequence[Unilateral], states: Sequence[State], phase: 
 def _at_ends(name: str, mean: Force, change: Force) -> Iterator[Force]:
     """Yield the tensions at the ends of a string that rubs: half of its friction below and above their mean."""
     for number, half in ((1, -ONE / 2), (2, ONE / 2)):
-        terms = [(row, combined((half, factor))) for row, factor in change.terms]
-        yield Force(f"{name}.{number}.tension", "N", [*mean.terms, *terms])
+        factors = dict(mean.terms)
+        for row, factor in change.terms:
+            factors[row] = combined((ONE, factors.get(row, {})), (half, factor))
+        yield Force(f"{name}.{number}.tension", "N", list(factors.items()))
 
 
 def _sums(unilateral: Sequence[Unilateral], forces: Sequence[Force]) -> list[Force]:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from core.errors import InvalidParameter, NotApplicable
-from core.multibody.solve import solve_scene
+from core.multibody.solve import DEFAULT_OUTPUTS, solve_scene
 from core.multibody.statics.thresholds import RestOf
 from tests.core.multibody.worked_examples import column, force, read
 from tests.oracles.plain_engine.comparison.comparing import compared
@@ -45,7 +45,9 @@ def test_the_heavier_mass_sinks_by_the_ratio_of_the_capstan(through: list[Any], 
         for name, x in (("light", -0.1), ("heavy", 0.1)):
             scene["bodies"][name] = scene["bodies"][name] | {"at": place(x, -1), "velocity": [0, 0]}
         scene["connections"][0]["through"] = [x if isinstance(x, str) else place(*x) for x in through]
-    answer = solve_scene(read(scene), [0.0, 0.5], ["trajectory", "forces-in-time", "work-in-time", "energy-in-time"])
+    answer = solve_scene(
+        read(scene), [0.0, 0.5], [*DEFAULT_OUTPUTS, "forces-in-time", "work-in-time", "energy-in-time"]
+    )
     assert answer.model.name == "constant acceleration"
     fall = column(answer, "heavy.position").values[0] - column(answer, "heavy.position").values[1]
     assert float((fall**2).sum() ** 0.5) == pytest.approx(gain / 8, rel=1e-12)
@@ -54,6 +56,8 @@ def test_the_heavier_mass_sinks_by_the_ratio_of_the_capstan(through: list[Any], 
     assert low == pytest.approx(G + gain, rel=1e-13)
     assert high == pytest.approx(3 * (G - gain), rel=1e-13)
     assert high / low == pytest.approx(k, rel=1e-13)
+    assert force(answer, ends["light"]) == pytest.approx(low, rel=1e-13)
+    assert force(answer, ends["heavy"]) == pytest.approx(high, rel=1e-13)
     assert column(answer, "s.tension").values[1] == pytest.approx((low + high) / 2, rel=1e-14)
     # The string rubs over the way by which it passes.
     assert column(answer, "s.friction.work").values[1] == pytest.approx(-(high - low) * gain / 8, rel=1e-12)
