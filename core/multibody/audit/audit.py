@@ -31,7 +31,7 @@ from core.multibody.audit.placement import Numbers, Placement, Pose, Twist, move
 from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
 from core.multibody.audit.searches import SearchedQuantities
-from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of, unsure_of
+from core.multibody.audit.start import AfterStart, accelerations_of, check_forces, check_places, forces_of, unsure_of
 from core.multibody.audit.totals import check_paths, check_totals, check_works, with_totals
 from core.multibody.audit.windows import NODES, check_windows, nodes
 from core.multibody.language.scene import Scene
@@ -138,6 +138,7 @@ class _Audit:
         """Compare what needs the start or windows of the motion."""
         description, answer, freedoms = self.description, self.answer, Freedoms(self.description)
         check_places(ledger, description, start)
+        check_forces(ledger, description, answer, start)
         if after is not None:
             after.check(ledger, measures, len(samples.times))
             forces = forces_of(answer)

@@ -13,8 +13,11 @@ from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import Ledger
 from core.multibody.audit.laws_at_samples import MeasureValues
 from core.multibody.audit.newton import Acceleration, Freedoms
-from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, cross, turned
+from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, Undefined, cross, turned
 from core.multibody.audit.samples import ATTITUDE, POSITION, Samples, axis_of_top
+
+KNOWN = 2.0**-40
+"""Share of forces to which others follow from them at a place in doubles."""
 
 SHORT_TIME = 2.0**-15
 """Time by which rates are compared before and after the start, in units of the quickest motion."""
@@ -85,6 +88,29 @@ def unsure_of(description: Description, answer: SceneSolution, freedoms: Freedom
 def forces_of(answer: SceneSolution) -> dict[str, Numbers]:
     """Return the forces at the start that are answered, as one sample; NaN where they are not determined."""
     return {name: np.array([np.nan if one.value is None else one.value]) for name, one in (answer.forces or {}).items()}
+
+
+def check_forces(ledger: Ledger, description: Description, answer: SceneSolution, start: Samples) -> None:
+    """Require forces at the start that follow from others of their connections to do so.
+
+    Parameters
+    ----------
+    start : Samples
+        One sample of the motion, at the start.
+    """
+    forces = forces_of(answer)
+    for one in description.connections:
+        if not one.derives or any(name not in forces for name in one.forces):
+            continue
+        try:
+            derived = one.derived(start.placement, start.motion, forces)
+        except Undefined:
+            continue
+        for name, value in derived.items():
+            if name in forces and not np.isnan(value - forces[name]).any():
+                size = sum(np.abs(forces[other]) for other in (*one.forces, name))
+                law = f"{name} at the start by the others"
+                ledger.compare(law, one.name, start.times, np.abs(value - forces[name]), KNOWN * size)
 
 
 class AfterStart:

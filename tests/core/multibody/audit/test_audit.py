@@ -7,6 +7,7 @@ more than its stated errors is no fault; so a spoiled answer counts where it dif
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -161,3 +162,18 @@ def test_right_answers_far_from_the_origin_pass(name: str) -> None:
     far = geometry.moved(catalogue()[name], ["1e6", "-7/3"])
     assert far is not None
     assert relations.answered(far.request).trajectory is not None
+
+
+def test_forces_at_the_start_that_do_not_follow_from_others_are_refused() -> None:
+    """The tensions at the ends of a rope are half of its friction below and above its mean tension."""
+    bodies = {"a": {"mass": 1, "at": [-0.1, -1]}, "b": {"mass": 3, "at": [0.1, -1]}}
+    rope = {"kind": "string", "name": "s", "through": ["a", [-0.1, 0], [0.1, 0], "b"], "friction": 0.1}
+    one = answered({"gravity": [0, -9.81], "bodies": bodies, "connections": [rope]}, [0.0, 0.3])
+    assert one.failure() is None
+    forces = dict(one.answer.forces or {})
+    value = forces["s.1.tension"].value
+    assert value is not None
+    forces["s.1.tension"] = replace(forces["s.1.tension"], value=value * (1 + 1e-9))
+    failure = replace(one, answer=replace(one.answer, forces=forces)).failure()
+    assert failure is not None
+    assert failure.law == "s.1.tension at the start by the others"
