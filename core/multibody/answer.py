@@ -138,7 +138,7 @@ class SceneExtremes:
     periodic : bool
         Whether that is a period, so that the extremes are those of all time.
     errors : mapping of str to float
-        Of both times (s); of a constant, as long as what was searched.
+        Of both times (s), for a constant as long as what was searched; and of the end of what was searched.
     least_places, largest_places : mapping of str to tuple of float
         Centres of mass at these times (m).
     place_errors : mapping of str to float

@@ -15,6 +15,7 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats
+from core.balls import distance_bound
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.answer import Occurrence, SceneExtremes
@@ -103,7 +104,12 @@ class _Part:
             error,
             until,
             self.period is not None,
-            {"least_time": late[0], "largest_time": late[1]},
+            # The end of a stretch is that of all that is searched, or one of several: see `Searches.extremes`.
+            {
+                "least_time": late[0],
+                "largest_time": late[1],
+                "until": 0.0 if self.period is None else _apart(self.period, until),
+            },
         )
 
 
@@ -144,20 +150,24 @@ class Searches:
             Where pairs of doubles do not reach the accuracy either.
         """
         found = [part.extremes(search.quantity) for part in self._parts(search, index)]
+        last = self.stretches[-1]
+        reached = last.start + last.extent
+        until = nearest(reached)
+        late = 0.0 if until == self.end else last.late + _apart(reached, until)
         if len(found) == 1:
-            return found[0]
+            one = found[0]
+            return one if one.periodic else replace(one, errors={**one.errors, "until": late})
         least, largest = min(found, key=lambda one: one.least), max(found, key=lambda one: one.largest)
         # The first of those that cannot be told apart, as on one stretch.
         low = next(one for one in found if one.least - least.least <= one.error + least.error)
         high = next(one for one in found if largest.largest - one.largest <= one.error + largest.error)
-        last = self.stretches[-1]
         return replace(
             low,
             largest=high.largest,
             largest_time=high.largest_time,
             error=max(low.error, high.error),
-            errors={"least_time": low.errors["least_time"], "largest_time": high.errors["largest_time"]},
-            until=nearest(last.start + arb(last.length)),
+            errors={**low.errors, "largest_time": high.errors["largest_time"], "until": late},
+            until=until,
             periodic=False,
         )
 
@@ -249,3 +259,10 @@ class Searches:
         time = min(nearest(stretch.start + hit.time), nearest(stretch.start + stretch.extent))
         error = hit.error + stretch.late + float(hit.time.rad()) + 2.0**-52 * abs(time)
         return Occurrence(search.quantity, search.equals, part.unit, 0, time, error, self.how)
+
+
+def _apart(time: Ball, double: float) -> float:
+    """Return a bound of the distance of a time from the double that is answered for it."""
+    bound = distance_bound(time, double)
+    assert bound is not None, "what is searched ends within the range of doubles"
+    return bound

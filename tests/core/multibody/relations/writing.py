@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -138,7 +139,8 @@ def reordered(request: Json) -> Transformed | None:
 def renamed(request: Json) -> Transformed | None:
     """Return a request with other names of bodies and connections."""
     found = copy.deepcopy(request)
-    bodies = {name: f"x{k}-{name[:40]}" for k, name in enumerate(reversed(found["bodies"]))}
+    bodies = {name: f"x{k}_{name[:40]}" for k, name in enumerate(reversed(found["bodies"]))}
+    read = re.compile(rf"(?<![\w.-])({'|'.join(map(re.escape, bodies))})(?=\.[a-z])") if bodies else None
     names = dict(bodies)
     found["bodies"] = {bodies[name]: body for name, body in found["bodies"].items()}
 
@@ -148,7 +150,15 @@ def renamed(request: Json) -> Transformed | None:
         head, dot, rest = value.partition(".")
         return bodies.get(head, head) + dot + rest
 
+    def formula(value: Any) -> Any:
+        if isinstance(value, list):
+            return [formula(one) for one in value]
+        return read.sub(lambda hit: bodies[hit[1]], value) if read and isinstance(value, str) else value
+
     for i, connection in enumerate(found.get("connections", ())):
+        for key in ("force", "torque", "acceleration", "law", "equals", "rate", "drive"):
+            if key in connection:
+                connection[key] = formula(connection[key])
         old = connection.get("name", f"{connection['kind']}-{i + 1}")
         names[old] = connection["name"] = f"y{50 - i}-{old[:40]}"
         for key in ("a", "b", "place", "body"):

@@ -336,6 +336,19 @@ def test_a_constant_of_a_fast_motion_has_no_time_of_its_own() -> None:
     assert found.errors["least_time"] == found.until
 
 
+def test_the_end_of_what_is_searched_has_an_error() -> None:
+    """A pendulum repeats after a period; a ball is followed to the last time, or to where its bounces are undecided."""
+    rod = {"kind": "rod", "a": "p", "b": [0, 0]}
+    scene = {"gravity": [0, -9.81], "bodies": {"p": {"mass": 1, "at": [1, -1]}}}
+    answer = solve_scene(read(scene | {"connections": [rod]}), [10.0], [ExtremesOf("p.position.x")])
+    (found,) = answer.extremes
+    assert found.periodic
+    assert abs(found.until - answer.period) <= found.errors["until"] + answer.period_error
+    assert 0.0 < found.errors["until"] < 1e-15
+    (found,) = solve_scene(read(scene | {"connections": []}), [0.7], [ExtremesOf("p.position.y")]).extremes
+    assert (found.until, found.errors["until"]) == (0.7, 0.0)
+
+
 def test_extremes_say_where_the_bodies_are() -> None:
     """A stone that is thrown is highest at vx vy/g, vy^2/(2 g); at the last time it is as far as it comes."""
     stone = {"mass": 1, "at": [0, 0], "velocity": [3, 4]}
