@@ -7,11 +7,13 @@ const LEFT_OUT = new Set(["times", "accuracy", "input_uncertainty", "round", "ou
 
 /** Fill `panel` and `more` with sliders for the numbers in `places`; `change(pointer, text)` is called while one moves. */
 export function sliders(panel, more, read, change) {
-  const { value, places } = read;
-  const leaves = [...places.keys()].filter((pointer) => typeof valueAt(value, pointer) === "number" && !LEFT_OUT.has(pointer.split("/")[1]));
-  const made = leaves.map((pointer) => [isPlace(pointer) ? more : panel, slider(pointer, valueAt(value, pointer), value, change)]);
+  const { value } = read;
+  const made = numbersOf(read).map((pointer) => [isPlace(pointer) ? more : panel, slider(pointer, valueAt(value, pointer), value, change)]);
   for (const target of [panel, more]) target.replaceChildren(...made.filter(([to]) => to === target).map(([, element]) => element));
 }
+
+/** Pointers of the numbers of a scene. */
+export const numbersOf = ({ value, places }) => [...places.keys()].filter((pointer) => typeof valueAt(value, pointer) === "number" && !LEFT_OUT.has(pointer.split("/")[1]));
 
 const isPlace = (pointer) => namesIn(pointer).some((part) => PLACES.has(part)) && !pointer.endsWith("radius") && !pointer.endsWith("slope");
 

@@ -4,6 +4,8 @@ import { showEvents, showModel } from "./answer_words.js";
 import { Board } from "./board.js";
 import { CurveChoice } from "./curve_choice.js";
 import { $, make, written } from "./dom.js";
+import { EquationsPanel } from "./equations_panel.js";
+import { FindBox } from "./find_box.js";
 import { facesAt, faultInWords, partOf } from "./impossible.js";
 import { Gallery } from "./gallery.js";
 import { headline, sayEvent } from "./headline.js";
@@ -75,10 +77,18 @@ function look() {
   player.show();
 }
 
+const described = () => (doc.sound && !isNamed(state.scene) && Object.keys(doc.scene.value.bodies ?? {}).length ? doc.scene : null);
+const equations = new EquationsPanel(described);
+const findBox = new FindBox({
+  scene: described, answer: () => answer, stop: () => player.stop,
+  set: (pointer, text) => { edit("Value taken", doc.scene.withSource(pointer, text)); },
+});
+
 const gallery = new Gallery((name) => choose(name));
 takeAway({
   player, say, name: () => (state.scene === OWN ? "scene" : state.scene), title: () => titleNow(), text: () => doc.text, trajectory: () => answer?.shown ?? null,
-  canvas: () => $(model?.space ? "space-canvas" : "plane-canvas"), svg: () => (model?.space ? null : plane.svg(titleNow())), render: () => (model?.space ? space.draw() : plane.draw()),
+  canvas: () => $(model?.space ? "space-canvas" : "plane-canvas"), request: () => [state.scene === OWN ? "/v1/scenes" : catalogue.get(state.scene).path, doc.scene.value],
+  svg: () => (model?.space ? null : plane.svg(titleNow())), render: () => (model?.space ? space.draw() : plane.draw()),
 });
 document.body.classList.toggle("embed", embedded);
 $("browse").onclick = () => gallery.open();
@@ -278,7 +288,11 @@ function show({ answer: next, text }, how, path) {
   $("window").placeholder = still ? "" : written(stop, 4);
   tell(events);
   curves.offer(still ? null : trajectory);
-  if (how !== "drag") compareByMethod();
+  if (how !== "drag") {
+    compareByMethod();
+    equations.refresh();
+    findBox.offer();
+  }
   showRequests({ "the motion": [path, value] });
 }
 

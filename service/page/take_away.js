@@ -1,5 +1,6 @@
 // What can be taken away of a scene: its link, a file of it, pictures, a table, a film, a sheet to print, a frame for another page.
 import { $, make } from "./dom.js";
+import { notebookOf } from "./notebook.js";
 
 const FRAMES = 30;
 /** Of a film, in a second. */
@@ -41,7 +42,7 @@ async function film(player, canvas, say) {
   return new Blob(pieces, { type: "video/webm" });
 }
 
-/** Wire the buttons; `page` has `name()`, `title()`, `text()`, `trajectory()`, `canvas()`, `svg()` or null, `player`, `say`. */
+/** Wire the buttons; `page` has `name()`, `title()`, `text()`, `request()` as path and question, `trajectory()`, `canvas()`, `svg()` or null, `player`, `say`. */
 export function takeAway(page) {
   const on = (id, act) => { $(id).onclick = async () => { const problem = await act(); if (problem) page.say(problem); }; };
   const copied = async (text, what) => {
@@ -58,6 +59,10 @@ export function takeAway(page) {
   on("take-png", () => new Promise((done) => { page.render(); page.canvas().toBlob((blob) => { if (blob) download(`${page.name()}.png`, blob); done(blob ? null : "The picture cannot be read."); }); }));
   on("take-svg", () => { const svg = page.svg(); if (svg) download(`${page.name()}.svg`, svg, "image/svg+xml"); return svg ? null : "Scenes in space have no SVG; take the PNG."; });
   on("take-csv", () => { const trajectory = page.trajectory(); if (trajectory) download(`${page.name()}.csv`, csvOf(trajectory), "text/csv"); return trajectory ? null : "There is no motion to tabulate."; });
+  on("take-notebook", () => {
+    const [path, scene] = page.request();
+    download(`${page.name()}.ipynb`, JSON.stringify(notebookOf(page.title(), location.origin, path, scene), null, 1), "application/x-ipynb+json");
+  });
   on("take-film", async () => { const blob = await film(page.player, page.canvas(), page.say); if (blob) download(`${page.name()}.webm`, blob); });
   on("take-print", () => { print(); });
 }

@@ -57,7 +57,10 @@ class SceneEquations(View):
         description="Equations of motion, one for each coordinate, with multipliers lambda_1, ... of the constraints."
     )
     constraints: list[WrittenEquation] = Field(description="What the coordinates satisfy besides, in the same order.")
-    forces: dict[str, WrittenEquation] = Field(description="Forces that are formulas of the question.")
+    forces: dict[str, WrittenEquation] = Field(
+        description="Forces that are formulas of the question, and those of connections that follow from coordinates, "
+        "rates and accelerations, by their names in `forces`."
+    )
     lagrangian: WrittenEquation | None = Field(description="null unless its equations are these.")
     conserved: list[ConservedQuantity] = Field(description="As the equations show for every motion.")
     linear: list[LinearPart] = Field(description="Matrices of the parts whose equations are linear.")

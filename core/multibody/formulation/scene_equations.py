@@ -14,6 +14,7 @@ from core.multibody.equations_answer import ConservedQuantity, SceneEquations
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.closed_forms import closed_forms
 from core.multibody.formulation.constants import Constants
+from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
 from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
 from core.multibody.formulation.lagrange import ENERGY, Conserved, lagrange_equations, measures_of, value_at_start
@@ -88,6 +89,7 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
     conserved = _with_one_energy(found, written.conserved, len(moving))
     constants = Constants([*reserved, *written.numbers])
     places = _places(found, written.places)
+    written.forces |= _forces(found, written.places)
     shown = SceneEquations(
         {name: None if node is None else constants.plain(node) for name, node in written.coordinates.items()},
         tuple(dict.fromkeys([*reduced.steps, *written.why])),
@@ -182,6 +184,16 @@ def _write_body(written: _Written, body: TurningBody, name: str, piece: Piece) -
         written.conserved.append((Conserved(f"{what} of {name}", formula), value_at_start(chart, formula)))
     for i in piece.indices:
         del written.places[i]
+
+
+def _forces(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:
+    """Return the forces of connections, as far as they follow from the motion."""
+    measures, expressions = found.described.measures, found.whole.reduced.expressions
+    turning = any(row.slide is not None for row in measures.table.rows)
+    if turning or measures.table.acting or len(places) < len(found.whole.reduced.table.names):
+        return {}
+    own = [_substituted(expression, places) for expression in expressions]
+    return {name: node_of_sum(total) for name, total in constraint_forces(measures.table, measures.forces, own).items()}
 
 
 def _places(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:

@@ -164,9 +164,11 @@ def solved(equations: SceneEquations, columns: Mapping[str, Jet], time: float = 
         # What no column shows has a rate, of a turn about an axis of space; its value is nowhere used.
         given = columns.get(name, Jet(mpmath.mpf(0))) if text is None else evaluated(text, columns | jets)
         jets[name] = Jet(given.value, given.rate)
-    for name, formula in equations.forces.items():
-        jets[name] = Jet(evaluated(formula.plain, jets).value)
     every = " ".join(one.plain for one in equations.equations)
+    for name, formula in equations.forces.items():
+        # Those of connections have accelerations in them, and are in no equation.
+        if name in every:
+            jets[name] = Jet(evaluated(formula.plain, jets).value)
     multipliers = sorted(set(re.findall(r"lambda_\d+", every)))
     # Rates of turn about the axes of a body have equations of the first order.
     first_order = {name for name in equations.coordinates if f"{name}'" in every and f"{name}''" not in every}

@@ -121,6 +121,23 @@ def test_printed_equations_have_the_accelerations_of_the_answer(name: str) -> No
         assert abs(printed - value) <= AGREED * size, (column, printed, value)
 
 
+@pytest.mark.parametrize("name", sorted(set(scene_catalogue()) - UNDECIDED))
+def test_printed_forces_have_the_values_of_the_answer(name: str) -> None:
+    scene = scene_of(scene_catalogue()[name].question)
+    outputs = ["accelerations", "forces", "trajectory", "equations"]
+    answer = solve_scene(scene, [0.0], outputs, 1e-6)  # type: ignore[arg-type]
+    assert answer.equations is not None
+    assert answer.forces is not None
+    with mpmath.workdps(25):
+        jets = solved(answer.equations, columns_at(scene, answer, 0)).jets
+        # Beside weights, which cancel where a force is zero.
+        size = max((abs(one.value) for one in answer.forces.values() if one.value is not None), default=0.0) + 10.0
+        for key, formula in answer.equations.forces.items():
+            known = answer.forces.get(key)
+            if known is not None and known.value is not None:
+                assert float(evaluated(formula.plain, jets).value) == pytest.approx(known.value, abs=AGREED * size), key
+
+
 LATER = 0.03
 """Time (s) that every motion of the catalogue but those named below reaches in its first phase."""
 
