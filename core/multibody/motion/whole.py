@@ -14,6 +14,7 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, entry
+from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
 from core.multibody.laws.samples import values_of
@@ -116,8 +117,16 @@ class Whole:
 
     @cached_property
     def independent_rows(self) -> list[int]:
-        """See `Table.independent_rows`; of the table as described."""
-        return self.measures.table.independent_rows()
+        """Rows of the table as described on which all others depend, in order.
+
+        What holds as long as the scene lasts and has the same line everywhere comes first: what it leaves to others it
+        leaves along the whole motion, whereas rows that turn with it, such as those of directions of welded bodies, may
+        come to depend on one another.
+        """
+        rows, q = self.measures.table.rows, self.measures.table.q
+        opens = {one.name for one in self.measures.unilateral}
+        order = sorted(range(len(rows)), key=lambda r: not rows[r].constant or rows[r].name in opens)
+        return sorted(order[k] for k in independent(rows[r].line(q) for r in order))
 
     def motion_of(self, coordinates: Sequence[int]) -> Motion | None:
         """Return the motion of the part that these coordinates of the scene follow, None where they stay."""

@@ -341,7 +341,7 @@ def test_a_welded_pair_that_turns_lands_once() -> None:
     assert column(answer, "disc.position").values[-1][1] == pytest.approx(-0.6, abs=1e-12)
 
 
-@pytest.mark.parametrize("spin", [(0, 0, 0), (1, 2, -1)])
+@pytest.mark.parametrize("spin", [(0, 0, 0), (1, 0, 0), (1, 2, -1)])
 @pytest.mark.parametrize("turned_round", [False, True])
 def test_a_welded_pair_lands_once_in_space(spin: tuple[int, int, int], turned_round: bool) -> None:
     """Taken as one rigid body: P = speed / (1/m + (r x n) J^-1 (r x n)), with the moments about the common centre.
