@@ -1,16 +1,16 @@
-"""Definitions of what formulas drive or hold: the turn of a motor, its rate, the length of a rod, relations."""
+"""Definitions of what formulas drive or hold: a turn, its rate, the length of a rod, a way along a line, relations."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.formulas import FormulaValue
-from core.multibody.audit.joints import RodDefinition
+from core.multibody.audit.joints import RodDefinition, SliderDefinition
 from core.multibody.audit.laws import Twisting
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, rate
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, dot, rate
 
 
 class Driven:
@@ -75,6 +75,32 @@ class DrivenRod(Driven, RodDefinition):
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
         return {"length": self.distance(placement) - self.drive.value(placement, {})}
+
+
+@dataclass(frozen=True)
+class DrivenSlider(Driven, SliderDefinition):
+    """A place is at a distance along a line that is given by time (m).
+
+    Attributes
+    ----------
+    direction : tuple of float
+        Of the line, in the axes of the body of `b`.
+    """
+
+    direction: tuple[float, ...] = ()
+    drive: FormulaValue = field(kw_only=True)
+
+    def along(self, placement: Placement) -> Numbers:
+        """Return how far the place is along the line (m), shape ()."""
+        return dot(self.carried(placement, self.direction), self.a.at(placement) - self.b.at(placement))
+
+    def held(self, placement: Placement) -> Mapping[str, Numbers]:
+        """See `Definition.held`."""
+        return {**super().held(placement), "length": self.along(placement) - self.drive.value(placement, {})}
+
+    def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
+        """See `Definition.efforts`."""
+        return {**super().efforts(placement, motion), f"{self.name}.drive": rate(self.along, placement, motion)}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.driven import RelationDefinition
-from core.multibody.audit.formula_forces import ForcesByFormulas, PullByFormula, TwistByFormula
+from core.multibody.audit.formula_forces import ForcesByFormulas, PullByFormula, TorqueByFormulas, TwistByFormula
 from core.multibody.audit.formulas import FormulaValue, Read, names_of_place, names_of_turn, time_of
 from core.multibody.audit.joints import approach
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, length, spin_of
@@ -111,9 +111,14 @@ def _components(
 
 
 def torque_by_formula(connection: Torque, reader: Reader, name: str, path: Path) -> Definition | None:
-    """Return the definition of a torque of the plane that is a formula; None of others."""
+    """Return the definition of a torque that is a formula, or turns with a body; None of others."""
+    where, given = (*path, "torque"), connection.torque
     if reader.dimension == 3:
-        return None
+        every = given if isinstance(given, (list, tuple)) else ()
+        if connection.in_ is None and not any(formula_of(reader, x, {}, (*where, i)) for i, x in enumerate(every)):
+            return None
+        components = _components(reader, every, {}, where)
+        return TorqueByFormulas(name, (connection.body,), connection.body, components, connection.in_ == "body")
     formula = formula_of(reader, connection.torque, names_of_turn(connection.body), (*path, "torque"))
     if formula is None:
         return None

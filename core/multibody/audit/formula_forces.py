@@ -11,7 +11,7 @@ import numpy as np
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.formulas import FormulaValue
 from core.multibody.audit.laws import Pull, Twisting
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, dot
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, dot, spin_of
 
 
 @dataclass(frozen=True)
@@ -117,3 +117,41 @@ class ForcesByFormulas(Definition):
             for _, formulas, factor in self.every
             for formula in formulas
         )
+
+
+@dataclass(frozen=True)
+class TorqueByFormulas(Definition):
+    """A torque on a body of space by the formulas of its components.
+
+    Attributes
+    ----------
+    turns : bool
+        Whether the components are along the axes of the body.
+    """
+
+    kind: ClassVar[str] = "torque"
+    body: str
+    components: tuple[FormulaValue, ...]
+    turns: bool
+
+    @property
+    def formulas(self) -> tuple[FormulaValue, ...]:
+        """See `Definition.formulas`."""
+        return self.components
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return True
+
+    def load(self, placement: Placement, motion: Motion, virtual: Motion) -> Numbers:
+        """See `Definition.load`."""
+        torque = np.stack(np.broadcast_arrays(*(one.value(placement, motion) for one in self.components)), axis=-1)
+        if self.turns:
+            rotation = placement[self.body].rotation
+            assert rotation is not None, "a torque turns with a body whose attitude is known"
+            torque = (rotation @ torque[..., None])[..., 0]
+        return dot(np.asarray(spin_of(virtual, self.body)), torque)
+
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        return max(one.quickness(0.0) for one in self.components)

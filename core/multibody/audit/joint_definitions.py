@@ -7,7 +7,7 @@ import numpy as np
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
-from core.multibody.audit.driven import DrivenRod
+from core.multibody.audit.driven import DrivenRod, DrivenSlider
 from core.multibody.audit.formula_definitions import value_or_formula
 from core.multibody.audit.joints import (
     Coincidence,
@@ -62,7 +62,11 @@ def slider(connection: Slider, reader: Reader, name: str, path: Path) -> Definit
         along = reader.unit(connection.direction, (*path, "direction"))
     else:
         along = reader.direction(connection.slope, (*path, "slope"))
-    return SliderDefinition(name, (*a.bodies, *b.bodies), a, b, perpendicular(along), _attitude(reader, a, b))
+    bodies, normals, attitude = (*a.bodies, *b.bodies), perpendicular(along), _attitude(reader, a, b)
+    if connection.drive is None:
+        return SliderDefinition(name, bodies, a, b, normals, attitude)
+    drive = value_or_formula(reader, connection.drive, {}, (*path, "drive"))
+    return DrivenSlider(name, bodies, a, b, normals, attitude, along, drive=drive)
 
 
 @definition_of.register

@@ -202,10 +202,12 @@ class SliderDefinition(Definition):
     def off(self, placement: Placement) -> Numbers:
         """Return how far the place is beside the line (m), shape (d - 1,)."""
         d = self.a.at(placement) - self.b.at(placement)
-        pose = None if self.b.body is None else placement[self.b.body]
-        # A particle carries directions of the ground.
-        pose = None if pose is None or pose.rotation is None else pose
-        return np.stack([dot(carried(pose, normal), d) for normal in self.normals], axis=-1)
+        return np.stack([dot(self.carried(placement, normal), d) for normal in self.normals], axis=-1)
+
+    def carried(self, placement: Placement, direction: tuple[float, ...]) -> Numbers:
+        """Return a direction that is fixed in the body of `b`; a particle carries directions of the ground."""
+        pose = pose_of(placement, self.b.body)
+        return carried(None if pose is None or pose.rotation is None else pose, direction)
 
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""

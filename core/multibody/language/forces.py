@@ -164,10 +164,14 @@ class AppliedForce(Connection):
 
 @dataclass(frozen=True)
 class Torque(Connection):
-    """A torque on a body (N m): a number in the plane, there also a formula, and a vector of numbers in space."""
+    """A torque on a body (N m): in the plane a number or formula, in space a vector of them.
+
+    In space with `in_` "body" the components are along the axes of the body, and turn with it.
+    """
 
     body: str
     torque: Number | Vector
+    in_: Literal["body"] | None = None
     name: str | None = None
     kind: ClassVar[str] = "torque"
 
@@ -177,7 +181,7 @@ class Torque(Connection):
 
     def formulas(self) -> Iterable[object]:
         """See `Connection.formulas`."""
-        return (self.torque,)
+        return (*listed(self.torque), self.torque)
 
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""

@@ -55,12 +55,16 @@ class Weld(TwoEnded):
 
 @dataclass(frozen=True)
 class Slider(TwoEnded):
-    """Place `a` stays on a line through place `b`, fixed in the body of `b`; the bodies do not turn to each other."""
+    """Place `a` stays on a line through place `b`, fixed in the body of `b`; the bodies do not turn to each other.
+
+    With a `drive` by time it is that far from `b` along the line (m).
+    """
 
     a: Place
     b: Place
     slope: Number | None = None
     direction: Vector | None = None
+    drive: Number | None = None
     name: str | None = None
     kind: ClassVar[str] = "slider"
 

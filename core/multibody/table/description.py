@@ -22,6 +22,7 @@ from core.multibody.table import (
     relations,
     rolling_in_space,
     strings,
+    torques,
 )
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.coordinates import Coordinates, dimension_of
@@ -29,7 +30,18 @@ from core.multibody.table.measures import Measures
 from core.multibody.table.moving_places import driven_works
 from core.multibody.table.rows import add_rows
 
-FORMS = (attraction, chains, contact_geometry, formula_laws, joints, laws, relations, rolling_in_space, strings)
+FORMS = (
+    attraction,
+    chains,
+    contact_geometry,
+    formula_laws,
+    joints,
+    laws,
+    relations,
+    rolling_in_space,
+    strings,
+    torques,
+)
 """The modules with the forms of `add_rows` for the kinds of the catalogue: their import registers them."""
 
 

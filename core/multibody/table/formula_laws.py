@@ -8,7 +8,7 @@ from itertools import starmap
 from core.errors import InvalidParameter, Path
 from core.formulas import Node, names_of
 from core.multibody.algebra.polynomials import ONE, Ball, Poly, coordinate, is_zero
-from core.multibody.language.forces import AppliedForce, Damper, Field, Spring, Torque
+from core.multibody.language.forces import AppliedForce, Damper, Field, Spring
 from core.multibody.language.motion_formulas import (
     TIME,
     TURNS,
@@ -158,28 +158,6 @@ def _along_axes(
 
 _AXIS = "component of the axis"
 """The name of a component of an axis of a body; no formula can call it."""
-
-
-def torque_by_formula(connection: Torque, measures: Measures, name: str, path: Path) -> bool:
-    """Add a torque of the plane that is a formula; return whether it is one."""
-    where, body = (*path, "torque"), connection.body
-    if formula_at(measures, connection.torque, TURNS, where) is None:
-        return False
-    if measures.dimension == 3:
-        raise InvalidParameter(where, "be a vector of numbers in space: formulas of torques are answered in the plane")
-    if not isinstance(body, str) or body not in measures.coordinates.frames:
-        remedy = near_and_all(body, measures.coordinates.frames, "bodies")
-        raise InvalidParameter((*path, "body"), "name a body of the scene", remedy=remedy)
-    turn = measures.coordinates.turn_of(body, (*path, "body"))
-    formula = written(measures, connection.torque, TURNS, where)
-    law = add_law(measures, name, formula, _of_turn(turn), {next(iter(turn))[0]: ONE}, where)
-    measures.works.append(WorkTerm(name, laws=[law]))
-    measures.forces.append(Force(f"{name}.torque", "N m", of_laws={law: ONE}))
-    return True
-
-
-def _of_turn(turn: Poly) -> dict[str, Input]:
-    return {one: Input(turn, one == "rate") for one in TURNS}
 
 
 def spring_by_law(connection: Spring, measures: Measures, name: str, a: Point, b: Point, path: Path) -> None:

@@ -69,6 +69,12 @@ def of_time(measures: Measures, name: str, value: object, path: Path) -> Poly | 
     return found
 
 
+def driven(measures: Measures, name: str, value: object, path: Path) -> Poly:
+    """Return a formula of time, or a number, as an affine polynomial of coordinates; see `of_time`."""
+    found = of_time(measures, name, value, path)
+    return constant(measures.numerals.number(value, path)) if found is None else found
+
+
 class FormulaRows:
     """Adds the rows of one formula.
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from core.errors import InvalidParameter, Path
+from core.balls import as_text
+from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.multibody.algebra.directions import perpendicular
-from core.multibody.algebra.polynomials import ONE, constant, difference, evaluated
+from core.multibody.algebra.polynomials import ONE, ZERO, constant, difference, dot, evaluated
 from core.multibody.language.connection import TwoEnded
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.written import GROUND
-from core.multibody.table.formulas_of_time import of_time
+from core.multibody.table.formulas_of_time import driven
 from core.multibody.table.frames import Point
-from core.multibody.table.measures import Measures
+from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.moving_places import place_of
 from core.multibody.table.rows import add_rows
 
@@ -48,13 +49,8 @@ def rod(connection: Rod, measures: Measures, name: str, path: Path) -> None:
     a, b = _ends(connection, measures, name, path)
     if connection.drive is not None and connection.length is not None:
         raise InvalidParameter((*path, "drive"), "be left out beside a length")
-    driven = None
-    if connection.drive is not None:
-        where = (*path, "drive")
-        driven = of_time(measures, name, connection.drive, where)
-        if driven is None:
-            driven = constant(measures.numerals.number(connection.drive, where))
-    measures.rod(name, a, b, connection.length, driven, path)
+    drive = None if connection.drive is None else driven(measures, name, connection.drive, (*path, "drive"))
+    measures.rod(name, a, b, connection.length, drive, path)
 
 
 @add_rows.register
@@ -73,6 +69,17 @@ def slider(connection: Slider, measures: Measures, name: str, path: Path) -> Non
         raise InvalidParameter((*path, "direction"), "be given")
     measures.slide(name, a, b, along, (*path, "direction"))
     measures.unturned(name, a, b, path)
+    if connection.drive is None:
+        return
+    where, size = (*path, "drive"), sum((x * x for x in along), ZERO).sqrt()
+    unit = measures.coordinates.vector_of(b.body, [x / size for x in along], path)
+    away = dot(unit, [difference(x, y) for x, y in zip(a.at, b.at, strict=True)])
+    apart = difference(away, driven(measures, name, connection.drive, where))
+    now = evaluated(away, measures.table.q)
+    if not (measures.sketch or abs(evaluated(apart, measures.table.q)) < CLOSE * (ONE + abs(now))):
+        rule = f"be {as_text(now, 10)} m at the start, as the places are apart along the line"
+        raise PlacesDisagree(where, rule, remedy="change it, or move the bodies")
+    measures.force(f"{name}.drive", [(measures.hold(name, apart), constant(ONE))])
 
 
 @add_rows.register

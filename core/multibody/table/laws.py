@@ -21,22 +21,20 @@ from core.multibody.algebra.polynomials import (
     product,
 )
 from core.multibody.language.connection import TwoEnded
-from core.multibody.language.forces import AppliedForce, Damper, Motor, SpinningFrame, Spring, Torque, TorsionSpring
+from core.multibody.language.forces import AppliedForce, Damper, Motor, SpinningFrame, Spring, TorsionSpring
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.formula_laws import (
     damper_by_law,
     force_by_formulas,
     spring_by_law,
-    torque_by_formula,
 )
-from core.multibody.table.formulas_of_time import clock, of_time
+from core.multibody.table.formulas_of_time import clock, driven
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.moving_places import place_of
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.rows import add_rows
-from core.near_names import near_and_all
 
 
 @add_rows.register
@@ -124,22 +122,17 @@ def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
     if (connection.rate is None) == (connection.drive is None):
         raise InvalidParameter(path, "have a rate or a drive")
     if connection.drive is not None:
-        driven = of_time(measures, name, connection.drive, (*path, "drive"))
-        if driven is None:
-            driven = constant(measures.numerals.number(connection.drive, (*path, "drive")))
-        apart = evaluated(difference(turn, driven), measures.table.q)
+        drive = driven(measures, name, connection.drive, (*path, "drive"))
+        apart = evaluated(difference(turn, drive), measures.table.q)
         if not (measures.sketch or abs(apart) < CLOSE):
             now = as_text(evaluated(turn, measures.table.q), 10)
             rule = f"be {now} rad at the start, as the bodies are turned"
             raise PlacesDisagree((*path, "drive"), rule, remedy="change it, or turn the bodies")
-        row = measures.hold(name, difference(turn, driven))
+        row = measures.hold(name, difference(turn, drive))
     else:
-        driven = of_time(measures, name, connection.rate, (*path, "rate"))
-        if driven is None:
-            driven = constant(measures.numerals.number(connection.rate, (*path, "rate")))
-        rates = rate_of(turn)
-        if any(not is_zero(x) for x in driven.values()):
-            rates = sum_of_rates((constant(ONE), rates), (combined((-ONE, driven)), {clock(measures): constant(ONE)}))
+        drive, rates = driven(measures, name, connection.rate, (*path, "rate")), rate_of(turn)
+        if any(not is_zero(x) for x in drive.values()):
+            rates = sum_of_rates((constant(ONE), rates), (combined((-ONE, drive)), {clock(measures): constant(ONE)}))
         row = measures.roll(name, rates)
     measures.force(f"{name}.torque", [(row, constant(ONE))], "N m")
 
@@ -204,40 +197,6 @@ def force(connection: AppliedForce, measures: Measures, name: str, path: Path) -
     measures.works.append(
         WorkTerm(name, combined(*((-x, component) for x, component in zip(vector, point.at, strict=True))))
     )
-
-
-@add_rows.register
-def torque(connection: Torque, measures: Measures, name: str, path: Path) -> None:
-    """Add a torque on a body."""
-    if torque_by_formula(connection, measures, name, path):
-        return
-    table, body = measures.table, connection.body
-    if measures.dimension == 2:
-        value = measures.numerals.number(connection.torque, (*path, "torque"))
-        if isinstance(body, str) and body in measures.coordinates.frames:
-            turn = measures.coordinates.turn_of(body, (*path, "body"))
-            table.add_load(next(iter(turn))[0], value)
-            measures.works.append(WorkTerm(name, combined((-value, turn))))
-            return
-        remedy = near_and_all(body, measures.coordinates.frames, "bodies")
-        raise InvalidParameter((*path, "body"), "name a body of the scene", remedy=remedy)
-    frame = measures.coordinates.frames.get(body) if isinstance(body, str) else None
-    if frame is None or frame.axes is None:
-        rigid = [one for one, entry in measures.coordinates.frames.items() if entry.axes is not None]
-        remedy = near_and_all(body, rigid, "rigid bodies") if rigid else "give the body its moments"
-        raise InvalidParameter((*path, "body"), "name a rigid body of the scene", remedy=remedy)
-    vector = measures.numerals.vector(connection.torque, (*path, "torque"), 3)
-    terms: list[tuple[Ball, int, int]] = []
-    # The forces (torque x e)/2 on the three unit vectors have the torque as their moment, and no other effect.
-    for axis in frame.axes:
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            table.add_stiffness(axis[i], axis[k], -vector[j] / 2)
-            table.add_stiffness(axis[i], axis[j], vector[k] / 2)
-            terms.append((-vector[j] / 2, axis[k], axis[i]))
-            terms.append((vector[k] / 2, axis[j], axis[i]))
-    measures.works.append(WorkTerm(name, terms=[(-factor, i, j) for factor, i, j in terms]))
-    measures.conservative = False
 
 
 def _ends(measures: Measures, connection: TwoEnded, path: Path) -> tuple[Point, Point]:

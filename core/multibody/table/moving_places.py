@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.errors import InvalidParameter, Path
-from core.multibody.algebra.polynomials import constant, degree
+from core.multibody.algebra.polynomials import degree
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import WorkTerm
-from core.multibody.table.formulas_of_time import of_time
+from core.multibody.table.formulas_of_time import driven
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 
@@ -19,11 +19,7 @@ def place_of(measures: Measures, name: str, place: object, path: Path) -> Point:
         raise InvalidParameter(path, "be a place: of the ground, its coordinates")
     if isinstance(place, str) or not isinstance(place, Sequence) or len(place) != measures.dimension:
         return measures.coordinates.point(place, path)
-    at = []
-    for i, value in enumerate(place):
-        driven = of_time(measures, name, value, (*path, i))
-        at.append(constant(measures.numerals.number(value, (*path, i))) if driven is None else driven)
-    return Point(at, None)
+    return Point([driven(measures, name, value, (*path, i)) for i, value in enumerate(place)], None)
 
 
 def driven_works(measures: Measures, name: str, first: int) -> Iterator[WorkTerm]:

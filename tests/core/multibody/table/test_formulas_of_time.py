@@ -171,3 +171,40 @@ def test_drives_that_do_not_fit_are_refused() -> None:
         answer(scene(BOB, rod([0, 0], drive="1 + t", length=1)))
     with pytest.raises(NotApplicable, match="equilibria"):
         answer(scene(BOB, rod([0, "sin(t)"])), outputs=("equilibria",))
+
+
+def driven_slider(drive: str, **more: Any) -> dict[str, Any]:
+    return {"kind": "slider", "name": "s", "a": "p", "b": [0, 0], "drive": drive, **more}
+
+
+def test_a_slider_that_is_driven_up_a_slope() -> None:
+    """The force along the slope is m (g/2 + x''), with x = (1 + sin 2t)/10."""
+    slider = driven_slider("(1 + sin(2*t))/10", slope={"degrees": 30})
+    found = answer(scene({"mass": 2, "at": {"polar": ["0.1", {"degrees": 30}]}}, slider, gravity=(0, -10)))
+    compared(found, "p.position", lambda t: [(1 + mp.sin(2 * t)) / 10 * x for x in (mp.sqrt(3) / 2, mp.mpf("0.5"))])
+    compared(found, "s.drive", lambda t: 2 * (5 - mp.mpf("0.4") * mp.sin(2 * t)))
+    compared(found, "s.work", lambda t: mp.mpf("0.04") * (mp.cos(2 * t) ** 2 - 0) + mp.sin(2 * t) - mp.mpf("0.04"))
+
+
+def test_a_slider_along_a_body_that_turns_throws_it_round() -> None:
+    """A point that moves out along a free bar: (I + m r^2) w is conserved, r = 1 + t/2."""
+    bar = {"mass": 1, "inertia": 2, "at": [0, 0], "angular_velocity": 3}
+    pin = {"kind": "pin", "a": "bar", "b": [0, 0]}
+    given = scene({"mass": 4, "at": [1, 0]}, pin, driven_slider("1 + t/2") | {"b": "bar"})
+    given["bodies"]["bar"] = bar
+    found = answer(given)
+    # angle = 18 times the integral of 1/(2 + 4 r^2) by t.
+    compared(found, "bar.angle", lambda t: 18 * mp.quad(lambda u: 1 / (2 + 4 * (1 + u / 2) ** 2), [0, t]))
+
+
+def test_a_slider_of_space_is_driven_along_its_direction() -> None:
+    body = {"mass": 3, "moments": [1, 2, 3], "at": ["0.1", "0.2", "0.2"]}
+    slider = driven_slider("0.3*(1 + t + t^2)", direction=[1, 2, 2]) | {"b": [0, 0, 0]}
+    found = answer(scene(body, slider, gravity=(0, 0, -9)))
+    compared(found, "s.drive", lambda t: 3 * (mp.mpf("0.6") + 6))
+
+
+def test_a_slider_that_does_not_start_where_it_is_driven_is_refused() -> None:
+    with pytest.raises(PlacesDisagree, match=r"be 1 m at the start") as refused:
+        answer(scene(BOB, driven_slider("sin(t)")))
+    assert refused.value.path == ("connections", 0, "drive")
