@@ -12,18 +12,24 @@ from core.assessment.feedback.entry_fault import EntryFault
 from core.assessment.feedback.languages import Sentence
 from core.assessment.typed_number import Locale
 
+# Symbols that are often written with other capitals; none of these is another unit.
+SHARED = {
+    "Kg": "kg", "KG": "kg", "kgs": "kg", "Rad": "rad", "Sec": "s", "RPM": "rpm", "Rpm": "rpm", "r.p.m": "rpm",
+}  # fmt: skip
 _GERMAN = {
     "sek": "s", "sekunde": "s", "sekunden": "s", "minute": "min", "minuten": "min",
     "std": "h", "stunde": "h", "stunden": "h", "tag": "d", "tage": "d", "tagen": "d",
     "millimeter": "mm", "zentimeter": "cm", "kilometer": "km", "gramm": "g", "kilogramm": "kg", "tonne": "t",
-    "tonnen": "t", "grad": "deg", "U": "turn", "umdrehung": "turn", "umdrehungen": "turn", "pro": "/",
+    "tonnen": "t", "grad": "deg", "U": "turn", "umdrehung": "turn", "umdrehungen": "turn", "umdr": "turn",
+    "radiant": "rad", "newtonmeter": "N m", "pro": "/",
 }  # fmt: skip
 _FRENCH = {
     "sec": "s", "seconde": "s", "secondes": "s", "minutes": "min", "heure": "h", "heures": "h", "jour": "d",
     "jours": "d", "mètre": "m", "mètres": "m", "centimètre": "cm", "centimètres": "cm", "millimètre": "mm",
     "millimètres": "mm", "kilomètre": "km", "kilomètres": "km", "gramme": "g", "grammes": "g", "kilogramme": "kg",
     "kilogrammes": "kg", "tonne": "t", "tonnes": "t", "degré": "deg", "degrés": "deg", "grade": "gon",
-    "grades": "gon", "rd": "rad", "radians": "rad", "tr": "turn", "tour": "turn", "tours": "turn", "par": "/",
+    "grades": "gon", "mn": "min", "rd": "rad", "radians": "rad", "tr": "turn", "tour": "turn", "tours": "turn",
+    "par": "/",
 }  # fmt: skip
 _SPANISH = {
     "seg": "s", "segundo": "s", "segundos": "s", "minuto": "min", "minutos": "min", "hora": "h", "horas": "h",
@@ -36,7 +42,7 @@ _SPANISH = {
 WORDS: Mapping[Locale, Mapping[str, str]] = {"de": _GERMAN, "en": {}, "es": _SPANISH, "fr": _FRENCH}
 """Symbols by word, in small letters except the U of revolutions, where pint does not know the word or misreads it."""
 
-_WORD = re.compile(r"(?<![^\W_])[^\W\d_]+\.?(?![^\W_])")
+_WORD = re.compile(r"(?<![^\W_])(?:r\.p\.m|[^\W\d_²³¹]+)(?![^\W\d_²³¹])(\.(?!\w))?")
 
 
 def in_symbols(unit: str, locale: Locale | None) -> str:
@@ -47,14 +53,14 @@ def in_symbols(unit: str, locale: Locale | None) -> str:
     EntryFault
         For ``grad`` without a locale, which is a degree or a gon.
     """
-    if locale is None:
-        if re.fullmatch(r"grad\b.*", unit, re.IGNORECASE):
-            rule = "be written in symbols: grad may be a degree or a gon"
-            raise EntryFault((), rule, remedy="write deg or gon", sentence=Sentence("unit-unknown"))
-        return unit
-    return _WORD.sub(lambda found: _symbol(found[0], WORDS[locale]), unit)
+    if locale is None and re.match(r"grad\b", unit, re.IGNORECASE):
+        rule = "be written in symbols: grad may be a degree or a gon"
+        raise EntryFault((), rule, remedy="write deg or gon", sentence=Sentence("unit-unknown"))
+    words = SHARED if locale is None else {**SHARED, **WORDS[locale]}
+    return _WORD.sub(lambda found: _symbol(found[0], words), unit)
 
 
 def _symbol(found: str, words: Mapping[str, str]) -> str:
+    """Return the symbol of a word. Short ones are no other for capitals: mn is a minute, and mN a millinewton."""
     word = found.rstrip(".")
-    return words.get(word) or words.get(word.lower(), found)
+    return words.get(word) or words.get(word.lower() if len(word) > 2 else "", found)

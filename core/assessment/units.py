@@ -44,6 +44,7 @@ _IN_FULL = re.compile(r"(?!Grad\b)[A-Z][a-z]{3,}")
 _MILLISECOND = re.compile(r"(?<![A-Za-z])ms(?![A-Za-z])")
 _RECIPROCAL = re.compile(r"\s*1\s*/")
 _RAISED = re.compile(r"(?<=[^\W\d_])(-?[1-9])(?!\d)")
+_BETWEEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])|(?<=[^\W_])\.(?=[^\W\d_])")
 _RUN_TOGETHER = re.compile(r"(?<![^\W_])([kMm]?N|J|kg)(mm|cm|m)?(s)?(?![^\W\d_])")
 _FACTOR = re.compile(r"([*/]?)([A-Za-z]+)(?:\^(-?\d))?")
 _DERIVED = {
@@ -82,8 +83,12 @@ def factor(given: str, unit: str) -> float:
 
 
 def _with_signs(given: str) -> str:
-    """Return a unit with the signs that are left out of ``m2``, ``s-1``, ``Nm`` (pint's nautical mile) and ``kgm``."""
+    """Return a unit with the signs that are left out of ``m2``, ``s-1``, ``Nm`` (pint's nautical mile) and ``kgm``.
+
+    The point and the hyphen of ``kg.m2`` and ``N-m`` are products.
+    """
     given = given.translate(_SUPERSCRIPTS)
+    given = _BETWEEN.sub("*", given)
     given = _RUN_TOGETHER.sub(lambda found: "*".join(filter(None, found.groups())), given)
     return _RAISED.sub(r"^\1", given)
 
