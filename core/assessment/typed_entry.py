@@ -11,6 +11,7 @@ from core.assessment.feedback.entry_fault import EntryFault
 from core.assessment.feedback.languages import Sentence
 from core.assessment.typed_number import DIGITS, WITH_COMMA, Locale, leading_number, plain_digits
 from core.assessment.unit_words import in_symbols
+from core.formulas import NAMES_OF_FUNCTIONS
 
 LONGEST_ENTRY = 300
 """Characters: as long as a formula may be."""
@@ -26,14 +27,16 @@ _RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 _NAMED = re.compile(r"(?:[^\W\d]\w*)?\s*[=≈~]\s*")
 """What stands before the answer itself: ``T = 6.28 s``."""
 _IN_FORMULA = re.compile(rf"(?<![\w.,]){DIGITS}")
-_WITH_UNIT = re.compile(r"(.*[\w)])\s+([A-Za-z°µμΩ%][\w°µμΩ%²³⁻¹*/^() .-]*)", re.DOTALL)
-_GOES_ON = re.compile(r"[-+*/^(×⋅·÷√]|pi\b|sqrt\b|(?!1\s*/\s*[^\W\d])\d|.*\+", re.DOTALL)
+_FUNCTION = rf"(?:pi\b|(?:{'|'.join(NAMES_OF_FUNCTIONS)})\s*\()"
+"""Pattern of what begins a factor of a formula, and no unit: ``min`` is a minute, and ``min(`` a function."""
+_WITH_UNIT = re.compile(rf"(.*[\w)])\s+(?!{_FUNCTION})([A-Za-z°µμΩ%][\w°µμΩ%²³⁻¹*/^() .-]*)", re.DOTALL)
+_GOES_ON = re.compile(rf"[-+*/^(×⋅·÷√]|{_FUNCTION}|(?!1\s*/\s*[^\W\d])\d|.*\+", re.DOTALL)
 """What follows a number that is the beginning of a formula; ``2.5 1/s`` has a unit, which has no sum."""
 _UNIT = re.compile(r"[\w°%µμΩ·*/^()²³⁻¹. -]*")
 _PRODUCT = str.maketrans({"⋅": "·", "×": "·"})
 _SEPARATOR = re.compile(r"[;|]|,\s")
 _WORDS: dict[str, bool | None] = {
-    "null": None,
+    **dict.fromkeys(("null", "none", "keine", "keiner", "aucun", "aucune", "ninguno", "ninguna")),
     **dict.fromkeys(("true", "yes", "wahr", "ja", "vrai", "oui", "verdadero", "sí"), True),
     **dict.fromkeys(("false", "no", "falsch", "nein", "faux", "non", "falso"), False),
 }
@@ -92,7 +95,7 @@ def typed_entry(text: str, locale: Locale | None = None) -> TypedEntry:
     if split is not None and not re.search(r"[-+*/^(]\s*$", split[1]):
         formula, unit = split[1], split[2].strip()
     formula = re.sub(r"√\s*([\d.,]+|[^\W\d]\w*)", r"sqrt(\1)", formula).translate(_OPERATORS)
-    formula = re.sub(r"(?<=\d)\s*(?=(?:pi|sqrt)\b)", "*", formula)
+    formula = re.sub(rf"(?<=\d)\s*(?={_FUNCTION})", "*", formula)
     formula = _IN_FORMULA.sub(lambda digits: plain_digits(digits[0], locale), formula)
     word = entry if re.fullmatch(r"[A-Za-z][\w -]*", entry) else None
     return TypedEntry(word, _symbols(unit, locale), formula)

@@ -54,6 +54,8 @@ from core.errors import InvalidParameter
         ("30\u00b0 15'/s", 30.25, "\u00b0/s"),
         ("TRUE", True, None),
         ("nein", False, None),
+        ("keine", None, None),
+        ("0,1047 min", 0.1047, "min"),
         ("null", None, None),
     ],
 )
@@ -70,6 +72,8 @@ def test_values_with_units(text: str, value: Any, unit: str | None) -> None:
         ("2,5*m*g", "2.5*m*g", None),
         ("sqrt(2) m/s", "sqrt(2)", "m/s"),
         ("2\u221a3 m", "2*sqrt(3)", "m"),
+        ("0,5 \u03c0/3", "0.5*pi/3", None),
+        ("2 sin(a) m", "2*sin(a)", "m"),
         ("\u221a(2,5/k)", "sqrt(2.5/k)", None),
         ("v = (m + M)*g", "(m + M)*g", None),
         ("(2,5)*m", "(2.5)*m", None),
@@ -149,13 +153,16 @@ def test_numbers_come_back_as_they_were_written(
     assert typed_entry(f"{written} m", locale) == TypedEntry(expected, "m")
 
 
+NOTHING = {"null", "none", "keine", "keiner", "aucun", "aucune", "ninguno", "ninguna"}
+
+
 @given(st.text(max_size=40))
 def test_any_text_is_read_or_refused(text: str) -> None:
     try:
         found = typed_entry(text)
     except InvalidParameter:
         return
-    assert found.value is not None or found.formula is not None or text.strip().lower() == "null"
+    assert found.value is not None or found.formula is not None or text.strip().lower() in NOTHING
 
 
 def test_a_unit_of_its_own_takes_precedence() -> None:
