@@ -139,3 +139,14 @@ def test_a_reference_has_the_error_that_stands_beside_it() -> None:
     question = {"path": "/v1/scenes", "request": OSCILLATOR}
     answer = handled(question, {"/period": {"value": 6.283, "unit": "s"}})
     assert answer["reference"][0]["error"] == answer_to(question)["errors"]["period"]
+
+
+def test_equations_that_the_question_asks_for_are_shown_with_the_reference() -> None:
+    """As part of the feedback: not where the reference is hidden, nor where nobody asked."""
+    question = question_of("simple-pendulum")
+    claim = {"/accelerations/bob/linear/0": {"value": 1, "unit": UNIT}}
+    assert "equations" not in handled(question, claim)
+    question["request"]["outputs"].append("equations")
+    shown = handled(question, claim)["equations"]["equations"]
+    assert [one["plain"] for one in shown] == ["bob.theta'' = -9.81*sin(bob.theta)"]
+    assert "equations" not in handled(question, claim, reveal=False)

@@ -131,7 +131,9 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
             submission_view(i, grader.judged(submission), grader.terms)
             for i, submission in enumerate(question.submissions)
         ]
-        shown = {"reference": reference_views(grader)} if question.reveal else {}
+        shown: Answer = {"reference": reference_views(grader)} if question.reveal else {}
+        if question.reveal and graded.answer.get("equations") is not None:
+            shown["equations"] = graded.answer["equations"]
         warnings = warnings if question.reveal else []
         return {"results": results, **shown, "warnings": [*warnings, *_left_out(question, grader)]}
 

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from core.assessment.compare import Form, Verdict
 from core.quantities import Unit
+from service.routes.equations_answer import SceneEquations
 from service.schemas import Envelope, RadiansPerSecond, Ratio, Seconds, View
 from service.schemas import Fault as FaultView
 
@@ -121,4 +122,8 @@ class AssessmentAnswer(Envelope):
     results: list[SubmissionResult] = Field(description="One for each submission.")
     reference: list[ReferenceFigure] | None = Field(
         default=None, description="Of every figure that was claimed; left out unless revealed."
+    )
+    equations: SceneEquations | None = Field(
+        default=None,
+        description="Of the scene of the question, if they are among its outputs; left out unless revealed.",
     )
