@@ -137,7 +137,8 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
         UndecidedKind(
             "lost-event",
             "An event cannot be located",
-            "The error of the motion has grown as large as the motion; the answer holds up to the last event.",
+            "The error of the motion has grown as large as the motion, or bodies that attract come too close; the "
+            "answer holds up to the last event, or to that time.",
             of_mechanics=False,
         ),
         UndecidedKind(

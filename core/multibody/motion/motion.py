@@ -241,6 +241,10 @@ class Motion(Protocol):
         """Return the time before `end` from which on it cannot be followed, and its error (s); None without one."""
         return None
 
+    def lost_in(self, end: float) -> str:
+        """Return why it is not known how it goes on where it ends before a time, empty where it is singular there."""
+        return ""
+
 
 @dataclass(frozen=True)
 class Rest(Motion):

@@ -210,7 +210,7 @@ class Numerical(Motion):
         Raises
         ------
         AccuracyUnreachable
-            Where pairs lose them too, but elsewhere; or beside a collision, but that of Kepler's problem.
+            Where pairs lose them too, but elsewhere.
         """
         scaled = end * two_to(-self.units.time)
         run = self.run("doubles", scaled)
@@ -220,20 +220,8 @@ class Numerical(Motion):
         if not reference.singular:
             self.keep_to_pairs()
             return None
-        inverse = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
-        nearest = np.abs(evaluate(reference, np.array([reference.end]))[0][0, inverse, 0]).max(initial=0.0)
-        if nearest > COLLIDED:
-            # A collision cannot be told from a pass so close that the connections are lost to rounding.
-            at = reference.end * two_to(self.units.time)
-            apart = two_to(-self.units.lengths[inverse[0]]) / float(nearest)
-            raise AccuracyUnreachable(
-                None,
-                np.inf,
-                f"bodies that attract or repel come within {apart:.2g} m of one "
-                f"another at {at:.10g} s, where even pairs of doubles lose them",
-                path=("times",),
-                remedy="ask for earlier times",
-            )
+        if self._apart_in(reference) is not None:
+            return reference.end * two_to(self.units.time)
         if reference.end == 0.0 or abs(reference.end - run.end) > _SAME_PLACE * abs(reference.end):
             raise AccuracyUnreachable(
                 None,
@@ -242,6 +230,26 @@ class Numerical(Motion):
                 path=("bodies",),
             )
         return reference.end * two_to(self.units.time)
+
+    def lost_in(self, end: float) -> str:
+        """Return how close bodies come that attract or repel where it ends; empty where none do.
+
+        A collision cannot be told from a pass so close that the connections are lost to rounding.
+        """
+        run = self.run("fine" if self.lost_to_doubles else "reference", end * two_to(-self.units.time))
+        apart = self._apart_in(run) if run.singular else None
+        if apart is None:
+            return ""
+        return (
+            f"bodies that attract or repel come within {apart:.2g} m of one another at "
+            f"{run.end * two_to(self.units.time):.10g} s, where even pairs of doubles lose them"
+        )
+
+    def _apart_in(self, run: Run) -> float | None:
+        """Return the distance (m) at the end of a run of bodies that attract or repel, None where none are close."""
+        inverse = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
+        nearest = np.abs(evaluate(run, np.array([run.end]))[0][0, inverse, 0]).max(initial=0.0)
+        return two_to(-self.units.lengths[inverse[0]]) / float(nearest) if nearest > COLLIDED else None
 
 
 def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float) -> Run:

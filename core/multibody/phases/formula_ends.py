@@ -1,4 +1,7 @@
-"""Where a motion cannot go on because a formula has no value: the root of what becomes negative, a division by zero."""
+"""Where it is not known how a motion goes on: bodies come too close, or a formula has no value.
+
+That is the root of what becomes negative, or a division by zero.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,21 @@ from core.multibody.phases.phase import Phase
 
 VANISHED = 2.0**-16
 """Share of its terms, then or at the start of a phase, below which an argument vanishes where a motion ends."""
+
+
+def what_ends(phase: Phase, late: float) -> Problem | None:
+    """Return why it is not known how a motion goes on from where its phase ends, None at a singular place.
+
+    Parameters
+    ----------
+    late : float
+        Time from the start of the phase to that end (s).
+    """
+    for _, motion in phase.models[0].whole.parts:
+        lost = motion.lost_in(2.0 * late)
+        if lost:
+            return Problem("lost-event", lost, (), decided_by="an answer up to an earlier time")
+    return formula_that_ends(phase, late)
 
 
 def formula_that_ends(phase: Phase, late: float) -> Problem | None:

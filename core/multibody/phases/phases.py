@@ -29,7 +29,7 @@ from core.multibody.equations.packed import nearest
 from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
-from core.multibody.phases.formula_ends import formula_that_ends
+from core.multibody.phases.formula_ends import what_ends
 from core.multibody.phases.openings import openings
 from core.multibody.phases.passing_touch import without_passing_touch
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
@@ -376,7 +376,7 @@ class _Run:
             return False
         except SingularPlace as place:
             phase.end = phase.start + place.time
-            lost = None if place.name else formula_that_ends(phase, float(place.time))
+            lost = None if place.name else what_ends(phase, float(place.time))
             kind, name = ("singular", place.name) if lost is None else (lost.code, ", ".join(lost.contacts))
             self.motion.problem = lost
             self.motion.ended = MotionEvent(kind, name, nearest(phase.end), self.tracks.late() + place.error)

@@ -13,7 +13,7 @@ from core.errors import MechanicsError
 from core.multibody.algebra.polynomials import ZERO
 from core.multibody.contacts.contact_states import PhaseTable
 from core.multibody.motion.modelling import Modelled
-from core.multibody.phases.formula_ends import formula_that_ends
+from core.multibody.phases.formula_ends import what_ends
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_ends import expansions_of
 from core.multibody.phases.tracks import Track
@@ -47,7 +47,7 @@ def smooth_motion(found: Modelled, times: Floats) -> PhaseMotion:
         motion.before = first_event(found.whole, watched, first, expansions) if first < 0.0 else None
         ended = first_event(found.whole, watched, last, expansions) if last > 0.0 else None
         if ended is not None and ended.kind == "singular" and not ended.name:
-            motion.problem = formula_that_ends(phase, ended.time)
+            motion.problem = what_ends(phase, ended.time)
             if motion.problem is not None:
                 ended = replace(ended, kind=motion.problem.code, name=", ".join(motion.problem.contacts))
     motion.events = [event for event in (motion.before, ended) if event is not None]

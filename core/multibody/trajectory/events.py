@@ -99,8 +99,9 @@ def searched_until(end: float, ended: MotionEvent | None) -> float:
     """Return the time until which quantities are searched (s): not quite to a place where they may be unbounded."""
     if ended is None:
         return end
-    if ended.kind == "formula":
-        # A formula that has lost its value may have done so as its slope grew; its pieces end at a known time.
+    if ended.kind in ("formula", "lost-event"):
+        # A formula that has lost its value may have done so as its slope grew, and bodies that come close are fast; the
+        # pieces of formulas end at a known time.
         return min(end, ended.time - ended.error if ended.error > 2.0**-40 * ended.time else ended.time)
     return min(end, BEFORE_SINGULAR * ended.time if ended.kind in OF_LENGTHS else ended.time)
 

@@ -189,7 +189,7 @@ def test_an_event_before_a_singular_place_does_not_depend_on_the_last_time(fast:
         ],
     }
     whole = solve_scene(read(scene), [1.0]).events
-    assert [event.kind for event in whole if event.kind != "lift-off"] == ["singular"]
+    assert [event.kind for event in whole if event.kind != "lift-off"] == ["lost-event"]
     for share in (0.9, 0.999):
         events = solve_scene(read(scene), [share * whole[-1].time]).events
         assert [(one.kind, one.time) for one in events] == [

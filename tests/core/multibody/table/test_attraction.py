@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.errors import AccuracyUnreachable, InvalidParameter
+from core.errors import InvalidParameter
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, force, linear, read
 
@@ -73,17 +73,23 @@ def test_what_cannot_attract_is_refused_with_its_path(connection, path):
     assert fault.value.path == path
 
 
-def test_what_comes_too_close_is_refused_with_where_and_when():
+def test_what_comes_too_close_ends_with_where_and_when():
     """Three equal masses at rest fall into their centre at pi/2 sqrt(r^3/2 mu), mu = 1/sqrt(3)."""
     bodies = {name: {"mass": 1, "at": {"polar": [1, {"degrees": 120 * i}]}} for i, name in enumerate("abc")}
     pairs = [{"kind": "gravitation", "a": a, "b": b, "constant": 1} for a, b in ("ab", "bc", "ca")]
     scene = read({"bodies": bodies, "connections": pairs})
     # Each is drawn by 1/(sqrt(3) r^2) towards the centre.
     fall = np.pi / 2 / np.sqrt(2 / np.sqrt(3))
-    with pytest.raises(AccuracyUnreachable, match=f"{fall:.5f}"[:6]) as fault:
-        solve_scene(scene, [2.0])
-    assert fault.value.path == ("times",)
-    early = solve_scene(scene, [1.4])
+    early = solve_scene(scene, [1.4, 2.0])
+    assert early.problem is not None
+    assert early.problem.code == early.ended.kind == "lost-event"
+    assert "m of one another" in early.problem.explanation
+    assert early.ended.time == pytest.approx(fall, abs=early.ended.error)
+    assert early.trajectory.time.tolist() == [1.4]
+    out_of_reach = {"kind": "contact", "name": "floor", "place": "a", "on": {"at": [0, -1000]}}
+    with_contact = solve_scene(read({"bodies": bodies, "connections": [*pairs, out_of_reach]}), [1.4, 2.0])
+    assert with_contact.ended.kind == "lost-event"
+    assert abs(with_contact.ended.time - early.ended.time) <= with_contact.ended.error + early.ended.error
     central = {
         "bodies": {"a": {"mass": 1, "at": [1, 0]}},
         "connections": [{"kind": "inverse-square", "a": "a", "b": [0, 0], "strength": "1/sqrt(3)"}],
