@@ -87,7 +87,7 @@ class _Part:
         ends = self.along.sampler(np.array([0.0, until]))
         require_in_range(quantity, ends.error, *ends.values)
         both = replace(self.along, end=until).extremes()
-        error = self.along.sampler(np.array([one.time for one in both])).error
+        error = max(one.known for one in both)
         times = [nearest(self.stretch.start + arb(one.time)) for one in both]
         # From the start of the scene a time is not rounded, but for the end of the stretch.
         extent = self.stretch.extent
@@ -149,6 +149,18 @@ class Searches:
         AccuracyUnreachable
             Where pairs of doubles do not reach the accuracy either.
         """
+        while True:
+            one = self._extremes(search, index)
+            # A quantity may be known much better at other times than where it is extreme.
+            if one.error <= self.accuracy * max(abs(one.least), abs(one.largest)):
+                return one
+            group, name = self._column(search, index)
+            reached = self._relative(group, name, one.error)
+            if reached <= self.accuracy:
+                return one
+            self._refine(name, reached, index)
+
+    def _extremes(self, search: ExtremesOf, index: int) -> SceneExtremes:
         found = [part.extremes(search.quantity) for part in self._parts(search, index)]
         last = self.stretches[-1]
         reached = last.start + last.extent
@@ -173,15 +185,20 @@ class Searches:
 
     def _parts(self, search: ValueSearch | ExtremesOf, index: int) -> Iterator[_Part]:
         """Yield a quantity on every stretch."""
+        group, name = self._column(search, index)
+        while (reached := self._relative(group, name)) > self.accuracy and np.isfinite(reached):
+            # What leaves the range of doubles is refused where it is found.
+            self._refine(name, reached, index)
+        yield from (self._part(stretch, group, search.quantity) for stretch in self.stretches)
+
+    def _column(self, search: ValueSearch | ExtremesOf, index: int) -> tuple[str, str]:
+        """Return the output that has a quantity, and the name of its column."""
         known: dict[str, Column] = {}
         for group in COLUMNS_OF_STATES:
             columns = self.stretches[0].columns(np.zeros(1), self.how, group)
             known |= columns
             if component(columns, search.quantity) is not None:
-                name = search.quantity if search.quantity in columns else search.quantity.rpartition(".")[0]
-                self._require_reached(group, name, index)
-                yield from (self._part(stretch, group, search.quantity) for stretch in self.stretches)
-                return
+                return group, search.quantity if search.quantity in columns else search.quantity.rpartition(".")[0]
         raise unknown(search, index, known)
 
     def _part(self, stretch: Stretch, group: str, quantity: str) -> _Part:
@@ -213,27 +230,26 @@ class Searches:
             )
         return found
 
-    def _require_reached(self, group: str, name: str, index: int) -> None:
-        """Go over to pairs of doubles where doubles do not reach the accuracy, and refuse what these do not reach."""
-        between = np.append(self.end * PLACES_BETWEEN, self.end)
-        while True:
-            columns = replace(self.columns, outputs=(group,)).at(between)
+    def _relative(self, group: str, name: str, error: float | None = None) -> float:
+        """Return an error of a column, by default that at some times, relative to the largest value in its unit."""
+        columns = replace(self.columns, outputs=(group,)).at(np.append(self.end * PLACES_BETWEEN, self.end))
+        if name not in columns:
             # What is not determined in every phase is refused where it is sampled.
-            reached = relative({name: columns[name].error}, columns) if name in columns else 0.0
-            # What leaves the range of doubles is refused where it is found.
-            if reached <= self.accuracy or not np.isfinite(reached):
-                return
-            if self.columns.finer or not self.columns.numerical:
-                break
-            self.columns = replace(self.columns, finer=True)
-            self.stretches = list(stretches(self.columns.motion, self.end, finer=True))
-        raise AccuracyUnreachable(
-            self.accuracy,
-            reached,
-            f"rounding is amplified in {name}, by the motion or by what is computed of it in doubles",
-            path=("outputs", index),
-            remedy="ask for a shorter time" + (" or a larger accuracy" if reached < 1.0 else ""),
-        )
+            return 0.0
+        return relative({name: columns[name].error if error is None else error}, columns)
+
+    def _refine(self, name: str, reached: float, index: int) -> None:
+        """Go over to pairs of doubles where doubles do not reach the accuracy, and refuse what these do not reach."""
+        if self.columns.finer or not self.columns.numerical:
+            raise AccuracyUnreachable(
+                self.accuracy,
+                reached,
+                f"rounding is amplified in {name}, by the motion or by what is computed of it in doubles",
+                path=("outputs", index),
+                remedy="ask for a shorter time" + (" or a larger accuracy" if reached < 1.0 else ""),
+            )
+        self.columns = replace(self.columns, finer=True)
+        self.stretches = list(stretches(self.columns.motion, self.end, finer=True))
 
     def _taken(self, search: ValueSearch, parts: Iterator[_Part]) -> Iterator[Occurrence]:
         """Yield where the value is taken, in order."""

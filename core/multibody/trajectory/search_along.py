@@ -60,11 +60,14 @@ class Extreme:
     value, time : float
     error : float
         Of the time (s).
+    known : float
+        Error of the value: another one, at a time that is not told from this, may be so much larger or smaller.
     """
 
     value: float
     time: float
     error: float
+    known: float
 
 
 @dataclass(frozen=True)
@@ -136,7 +139,8 @@ class SearchAlong:
         quantities = self.sought.turning()
         if not self.end > 0.0 or self._vanishes(quantities[0]):
             # Of a constant no time is told from another.
-            constant = Extreme(float(self.sampler(np.zeros(1)).values[0]), 0.0, self.end)
+            start = self.sampler(np.zeros(1))
+            constant = Extreme(float(start.values[0]), 0.0, self.end, start.error)
             return constant, constant
         zeros = EveryZero(self._motions, quantities, self._coarse)
         turns = [one for one in zeros.until(min(self.end, self.expanded)) if one.time < self.end]
@@ -165,14 +169,17 @@ class SearchAlong:
         found = []
         for sign in (-1.0, 1.0):
             # The first of those that cannot be told apart from the largest: the quantity is monotonic in between.
-            alike = sign * values >= np.max(sign * values) - 2.0 * column.error
+            best = int(np.argmax(sign * values))
+            alike = sign * values >= sign * values[best] - 2.0 * column.error
             k = int(np.argmax(alike))
             hit, last = locate(k), k + int(np.argmin(np.append(alike[k:], False))) - 1
             time = float(np.clip(times[k], 0.0, self.end))
             error = max(float(times[last]) - time, 0.0)
             if hit is not None:
                 error += hit.error + abs(candidates[k][0]) + 2.0**-52 * time
-            found.append(Extreme(float(values[k]), time, error))
+            own = self.sampler(np.clip(times[[k, best]], 0.0, self.end)).error
+            known = own + float(sign * (values[best] - values[k]))
+            found.append(Extreme(float(values[k]), time, error, known))
         return found[0], found[1]
 
     @property

@@ -349,6 +349,23 @@ def test_the_end_of_what_is_searched_has_an_error() -> None:
     assert (found.until, found.errors["until"]) == (0.7, 0.0)
 
 
+@pytest.mark.parametrize("across", ["1e-2", "3e-3"])
+def test_what_is_extreme_where_it_is_known_worst_is_as_right_as_is_asked(across: str) -> None:
+    """A fall past a centre at a millionth of the distance: doubles lose the speed there, and no sample shows it."""
+    centre = {"kind": "inverse-square", "name": "c", "a": "p", "b": [0, 0], "strength": 3}
+    body = {"mass": 2, "at": [0, 0.5], "velocity": [across, 0]}
+    scene = {"gravity": [0, -10], "bodies": {"p": body}, "connections": [centre]}
+    (found,) = solve_scene(read(scene), [1.0], [ExtremesOf("p.velocity.length")], 1e-6).extremes
+    assert found.error <= 1e-6 * found.largest
+    assert found.largest > 400.0
+    nearest = solve_scene(read(scene), [found.largest_time], ("trajectory",), 1e-3)
+    away = float(np.linalg.norm(column(nearest, "p.position").values[-1]))
+    # Energy: 3/r - 2 g y - v^2 is what it was.
+    height = float(column(nearest, "p.position").values[-1, 1])
+    speed = np.sqrt(float(across) ** 2 + 3.0 * (1.0 / away - 2.0) + 20.0 * (0.5 - height))
+    assert found.largest == pytest.approx(speed, rel=1e-3)
+
+
 def test_extremes_say_where_the_bodies_are() -> None:
     """A stone that is thrown is highest at vx vy/g, vy^2/(2 g); at the last time it is as far as it comes."""
     stone = {"mass": 1, "at": [0, 0], "velocity": [3, 4]}
