@@ -133,11 +133,11 @@ def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str]:
         remedy = "with decimal commas: [1,5; 2; 3]"
         raise EntryFault((), "be a list such as [1.5, 2, 3]", remedy=remedy, sentence=Sentence("list-malformed"))
     parts = re.split("[;|]" if re.search("[;|]", inside) else r",\s", inside.strip("[](){}"))
-    found = [leading_number(part.strip(), locale) or (0.0, "none") for part in parts]
+    found = [number for part in parts if (number := leading_number(part.strip(), locale)) is not None]
+    *others, (last, rest) = found or [(0.0, "")]
     if not unit and end == len(entry) and entry[0] not in "[({":
         # Without brackets the unit follows the last number.
-        unit = found[-1][1]
-        found[-1] = found[-1][0], ""
-    if any(rest for _, rest in found):
+        unit, rest = rest, ""
+    if len(found) < len(parts) or rest or any(behind for _, behind in others):
         raise EntryFault((), "be a list of numbers such as [1,5; 2; 3]", sentence=Sentence("list-malformed"))
-    return [value for value, _ in found], unit
+    return [*(value for value, _ in others), last], unit

@@ -115,6 +115,12 @@ def test_a_locale_decides_what_a_comma_is(text: str, locale: Locale, value: floa
         ("6,28 ± 0,01 s", None),
         ("1,5; 2 m; 3", None),
         ("(1, x)", None),
+        ("1;", None),
+        (";", None),
+        ("1; x", None),
+        ("[1; 2 m; 3]", None),
+        ("(1; 2", None),
+        ("{", None),
     ],
 )
 def test_what_can_be_read_in_two_ways_or_in_none_is_refused(text: str, locale: Locale | None) -> None:
