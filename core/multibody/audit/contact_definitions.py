@@ -125,14 +125,14 @@ def rolling(connection: Rolling, reader: Reader, name: str, path: Path) -> Defin
     if "radius" in on:
         around = Round(place, at, (radius, reader.number(on["radius"], (*where, "radius"))))
         return RollingOnRound(name, bodies, around) if reader.dimension == 2 else RollingOnBall(name, bodies, around)
-    turning = reader.number(on["rate"], (*where, "rate")) if on.get("rate") is not None else 0.0
-    return RollingOnFace(name, bodies, tip, _face(reader, on, where), turning)
+    return RollingOnFace(name, bodies, tip, _face(reader, on, where))
 
 
 def _face(reader: Reader, on: Any, where: Path) -> Face:
     at = reader.place(on["at"], (*where, "at"))
     if "normal" in on:
-        return Face(at, reader.unit(on["normal"], (*where, "normal")))
+        turning = reader.number(on["rate"], (*where, "rate")) if on.get("rate") is not None else 0.0
+        return Face(at, reader.unit(on["normal"], (*where, "normal")), turning)
     if reader.dimension != 2:
         raise Undefined("a face of space without a normal")
     c, s = reader.direction(on.get("slope"), (*where, "slope"))

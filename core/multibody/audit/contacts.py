@@ -42,6 +42,11 @@ class OnFace(Touching):
     face: Face
 
     @property
+    def driven(self) -> float:
+        """See `Definition.driven`."""
+        return max(super().driven, abs(self.face.turning))
+
+    @property
     def reach(self) -> float:
         """See `Definition.reach`."""
         return self.tip.size
@@ -62,7 +67,7 @@ class OnFace(Touching):
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
-        slips = self.slips(placement, motion).values()
+        slips = [self.face.passing(placement, motion, self.tip)] if self.touch.friction else []
         return {f"{self.name}.normal": rate(self.gap, placement, motion), **friction_powers(self.touch.friction, slips)}
 
 

@@ -23,11 +23,10 @@ class RollingOnFace(Definition):
     kind: ClassVar[str] = "rolling"
     tip: Tip
     face: Face
-    turning: float = 0.0
 
     def works(self) -> bool:
         """See `Definition.works`."""
-        return self.turning != 0.0
+        return self.face.turning != 0.0
 
     @property
     def reach(self) -> float:
@@ -44,16 +43,11 @@ class RollingOnFace(Definition):
 
     def held_rates(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.held_rates`."""
-        slip = self.face.slip(placement, motion, self.tip)
-        if not self.turning:
-            return {"slip": slip}
-        n = self.face.normal_in(placement)
-        d = self.tip.place.at(placement) + self.tip.lever(placement, n) - self.face.at.at(placement)
-        return {"slip": slip - self.turning * cross(n, d)}
+        return {"slip": self.face.slip(placement, motion, self.tip)}
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
-        slip = self.face.slip(placement, motion, self.tip)
+        slip = self.face.passing(placement, motion, self.tip)
         names = [f"{self.name}.friction"]
         if len(self.face.normal) == 3:
             names = [f"{self.name}.friction.{axis}" for axis in AXES]

@@ -108,7 +108,8 @@ def check_forces(ledger: Ledger, description: Description, answer: SceneSolution
             continue
         for name, value in derived.items():
             if name in forces and not np.isnan(value - forces[name]).any():
-                size = sum(np.abs(forces[other]) for other in (*one.forces, name))
+                # Of a sum of several parts some may not be determined.
+                size = np.nansum([np.abs(forces[other]) for other in (*one.forces, name)], axis=0)
                 law = f"{name} at the start by the others"
                 ledger.compare(law, one.name, start.times, np.abs(value - forces[name]), KNOWN * size)
 

@@ -60,10 +60,14 @@ class Tip:
 
 @dataclass(frozen=True)
 class Face:
-    """A line of the plane or a plane of space, fixed in the body of `at`; free on the side of its unit normal."""
+    """A line of the plane or a plane of space, fixed in the body of `at`; free on the side of its unit normal.
+
+    A plane may turn about its normal through `at`, at a rate `turning` (rad/s).
+    """
 
     at: Place
     normal: tuple[float, ...]
+    turning: float = 0.0
 
     def normal_in(self, placement: Placement) -> Numbers:
         """Return the normal in space, shape (d,)."""
@@ -77,7 +81,16 @@ class Face:
         return dot(n, tip.place.at(placement) - self.at.at(placement)) + dot(n, tip.lever(placement, n))
 
     def slip(self, placement: Placement, motion: Motion, tip: Tip) -> Numbers:
-        """Return the rate of slip of what touches (m/s): along the face in the plane, else a vector."""
+        """Return the rate of slip of what touches on the face (m/s): along it in the plane, else a vector."""
+        found = self.passing(placement, motion, tip)
+        if not self.turning:
+            return found
+        n = self.normal_in(placement)
+        arm = tip.place.at(placement) + tip.lever(placement, n) - self.at.at(placement)
+        return found - self.turning * cross(n, arm)
+
+    def passing(self, placement: Placement, motion: Motion, tip: Tip) -> Numbers:
+        """Return the same on a face that does not turn by itself: it is linear in the motion."""
         n, place = self.normal_in(placement), tip.place
         relative = place.velocity(placement, motion) - self.at.velocity(placement, motion)
         spin = spin_of(motion, place.body) if tip.size else 0.0

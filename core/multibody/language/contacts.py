@@ -72,7 +72,8 @@ class Contact(SurfaceConnection):
 
     `place`, a point or a body with a rim or a shape, does not pass `on`: a face ``{at, slope}``, free on the left
     of its slope, or a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. In space
-    a face is a plane ``{at, normal}``, free on the side of its normal, and a circle is a sphere. Or `a` does not
+    a face is a plane ``{at, normal}``, free on the side of its normal, about which it may turn at a `rate` (rad/s), and
+    a circle is a sphere. Or `a` does not
     pass `b`, of which one has a rim or a shape at least. Or with `measure` "turn", the turn of `a` relative to `b`
     stays `at_least` or `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order`
     says, where several impacts at once leave their outcome open, in which order they happen: those of equal order

@@ -22,6 +22,7 @@ from core.multibody.algebra.polynomials import (
     degree,
     difference,
     dot,
+    is_zero,
 )
 from core.multibody.language.contacts import Contact
 from core.multibody.table.contact_places import Side, gap_of_rims, is_on, place_on, refuse_limits, two_sides
@@ -73,8 +74,10 @@ def _on(measures: Measures, connection: Contact, name: str, path: Path, *, rubs:
     if set(on) == {"radius"}:
         reach = measures.numerals.number(on["radius"], (*where, "radius"))
         return _round(side, Side([at], [()], reach), path, rubs=rubs)
-    if set(on) != {"normal"}:
-        raise InvalidParameter(where, "have at, and normal or radius", remedy='a level floor is "normal": [0, 0, 1]')
+    if not {"normal"} <= set(on) <= {"normal", "rate"}:
+        raise InvalidParameter(
+            where, "have at, and normal (and rate) or radius", remedy='a level floor is "normal": [0, 0, 1]'
+        )
     n = unit(measures.numerals.vector(on["normal"], (*where, "normal"), 3), (*where, "normal"))
     if rubs and at.body is not None and measures.coordinates.frames[at.body].orients:
         raise InvalidParameter(
@@ -89,7 +92,17 @@ def _on(measures: Measures, connection: Contact, name: str, path: Path, *, rubs:
     if not rubs:
         return [Touching(gap, None, None, side.round) for gap in gaps]
     tangents = perpendicular(n, where)
-    slips = [_slips(measures, f"{name}.slip.{k + 1}", reach, apart, e) for k, e in enumerate(tangents)]
+    rate = measures.numerals.number(on.get("rate", 0), (*where, "rate"))
+    if is_zero(rate):
+        slips = [_slips(measures, f"{name}.slip.{k + 1}", reach, apart, e) for k, e in enumerate(tangents)]
+    else:
+        slips = [[], []]
+        for i, d in enumerate(apart):
+            for k, e in enumerate(tangents):
+                own = f"{2 * i + k + 1}"
+                turning = reach.carried(measures, (name, f"{name}.arm.{own}"), d, n, e, rate)
+                line = sum_of_rates(*reach.velocity(d, e), turning)
+                slips[k].append(_constant(measures, f"{name}.slip.{own}", line))
     return [
         Touching(gap, (one, other), (tangents[0], tangents[1]), side.round)
         for gap, one, other in zip(gaps, *slips, strict=True)
@@ -104,14 +117,19 @@ def _slips(
     Friction that turns with the slip takes its direction from such forms. Where the point that touches moves in the
     body, a coordinate is added whose rate is the slip of the first corner; that of another differs as the corners do.
     """
-    first = sum_of_rates(*reach.velocity(apart[0], e))
-    if any(degree(poly) > 0 for poly in first.values()):
-        index = measures.table.coordinate(name, "m", ZERO)
-        measures.roll(name.partition(".")[0], {**first, index: constant(-ONE)})
-        first = {index: constant(ONE)}
+    first = _constant(measures, name, sum_of_rates(*reach.velocity(apart[0], e)))
     fixed = list(map(constant, e))
     beside = [rate_of(difference(dot(fixed, d), dot(fixed, apart[0]))) for d in apart]
     return [sum_of_rates((constant(ONE), first), (constant(ONE), rate)) for rate in beside]
+
+
+def _constant(measures: Measures, name: str, line: LinearForm) -> LinearForm:
+    """Return a rate as a form with constant coefficients, if need be by a coordinate whose rate it is."""
+    if all(degree(poly) <= 0 for poly in line.values()):
+        return line
+    index = measures.table.coordinate(name, "m", ZERO)
+    measures.roll(name.partition(".")[0], {**line, index: constant(-ONE)})
+    return {index: constant(ONE)}
 
 
 def _round(a: Side, b: Side, path: Path, *, rubs: bool) -> list[Touching]:

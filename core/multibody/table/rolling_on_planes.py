@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from core.errors import Path
-from core.multibody.algebra.directions import cross, perpendicular, unit
+from core.multibody.algebra.directions import perpendicular, unit
 from core.multibody.algebra.polynomials import ONE, combined, constant, difference, dot, is_zero
 from core.multibody.table.contact_places import Side
-from core.multibody.table.formulas_of_time import clock
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import COMPONENTS, Measures
 from core.multibody.table.rolling import sum_of_rates
@@ -40,11 +39,7 @@ def roll_on_plane(
     for k, e in enumerate(across):
         parts = reach.velocity(d, e)
         if not is_zero(turning):
-            # The surface moves with turning n x r, of which this is the component along e.
-            f = cross(e, n)
-            r = combined((ONE, dot(list(map(constant, f)), d)), (ONE, reach.along(f)))
-            r = measures.affine(name, f"{name}.arm.{k + 1}", "m", r)
-            parts.append((combined((-turning, r)), {clock(measures): constant(ONE)}))
+            parts.append(reach.carried(measures, (name, f"{name}.arm.{k + 1}"), d, n, e, turning))
         rows.append(measures.roll(name, sum_of_rates(*parts)))
     for i, axis in enumerate(COMPONENTS):
         terms = [(row, constant(e[i])) for row, e in zip(rows, across, strict=True) if not is_zero(e[i])]

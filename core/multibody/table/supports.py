@@ -33,6 +33,7 @@ from core.multibody.algebra.polynomials import (
 )
 from core.multibody.table.connection_effects import Limit
 from core.multibody.table.contact_places import Side
+from core.multibody.table.formulas_of_time import clock
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of
 
@@ -84,6 +85,31 @@ class Support:
             for p, axis in zip(self.lever, self.axes, strict=True)
         ]
         return combined(*terms)
+
+    def carried(
+        self,
+        measures: Measures,
+        names: tuple[str, str],
+        d: Sequence[Poly],
+        n: Sequence[Ball],
+        e: Sequence[Ball],
+        rate: Ball,
+    ) -> tuple[Poly, LinearForm]:
+        """Return the term of a slip along e by which a plane moves that turns about its normal at a rate (rad/s).
+
+        The plane moves with rate n x r, where r leads from the point about which it turns to that which touches.
+
+        Parameters
+        ----------
+        names : tuple of two strings
+            Of the connection, and of a coordinate that may be needed for a component of r.
+        d : sequence of polynomial
+            From the point about which it turns to the corner (m).
+        """
+        f = cross(e, n)
+        arm = combined((ONE, dot(list(map(constant, f)), d)), (ONE, self.along(f)))
+        arm = measures.affine(names[0], names[1], "m", arm)
+        return combined((-rate, arm)), {clock(measures): constant(ONE)}
 
 
 def support(measures: Measures, name: str, side: Side, n: Sequence[Poly], path: Path, *, levers: bool) -> Support:
