@@ -345,7 +345,10 @@ class _Run:
             if self.motion.phases and old is State.OPEN and new is not State.OPEN:
                 # What closes without an approach that is known has had no impact.
                 met = {event.name for event in self.motion.events[known:]} | {self.motion.phases[-1].settles}
-                kind = "" if one.name in met else one.closes
+                # Where one corner of a shape takes over from another, the shape has touched before.
+                pairs = zip(self.unilateral, self.states, strict=True)
+                touched = {other.whole for other, state in pairs if other.whole and state is not State.OPEN}
+                kind = "" if one.name in met or one.whole in touched else one.closes
             if kind and self.motion.phases:
                 self._event(kind, one.name)
             if old is not new:
