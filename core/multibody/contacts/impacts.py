@@ -18,7 +18,7 @@ from flint import arb, arb_mat
 
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
-from core.multibody.algebra.rank import Elimination
+from core.multibody.algebra.rank import Elimination, independent
 from core.multibody.contacts.contact_responses import (
     Forces,
     Responses,
@@ -255,10 +255,10 @@ def _group(
     names = tuple(unilateral[i].name for i in group)
     given = [i for i in group if unilateral[i].order is not None]
     if len(given) == len(group) > 1:
-        return _in_turn(unilateral, _by_order(unilateral, given), *_without_width(rates, found))
+        return _in_turn(unilateral, _by_order(unilateral, given), rates, found)
     if simultaneous == "in order" and len(group) > 1:
         others = [[i] for i in group if unilateral[i].order is None]
-        return _in_turn(unilateral, [*_by_order(unilateral, given), *others], *_without_width(rates, found))
+        return _in_turn(unilateral, [*_by_order(unilateral, given), *others], rates, found)
     if settled is not None and all(unilateral[i].law == "newton" for i in group):
         known = [settled.changes[i] for i in group if i in settled.changes]
         change = [sum(parts, ZERO) for parts in zip(*known, strict=True)] or [ZERO] * len(v)
@@ -275,9 +275,8 @@ def _group(
     if len(apart) <= 1 and sum(rates[normal[i]] < 0 for i in group) <= 1:
         return at_once
     outcomes: list[tuple[str, Forces]] = [("together", impulses)]
-    middle = _without_width(rates, found)
     for order in permutations(group) if len(group) <= _MOST_ORDERED else _rotations(group):
-        in_turn = _in_turn(unilateral, [[i] for i in order], *middle)
+        in_turn = _in_turn(unilateral, [[i] for i in order], rates, found)
         if isinstance(in_turn, _Outcome):
             outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn.impulses))
     different: list[tuple[str, RatesByLine]] = []
@@ -285,7 +284,9 @@ def _group(
         then = rates_after(one, rates, found)
         if not any(alike(then, other, rates) for _, other in different):
             different.append((described, then))
-    if len(different) == 1 and (len(group) <= _MOST_ORDERED or _ends_alike(unilateral, group, *middle)):
+    if len(different) == 1 and (
+        len(group) <= _MOST_ORDERED or _ends_alike(unilateral, group, *_without_width(rates, found))
+    ):
         return at_once
     return Problem(
         "simultaneous-impacts",
@@ -392,9 +393,10 @@ def _gap_afterwards(one: Unilateral, line: int, after: RatesByLine) -> str:
 
 
 def _in_turn(
-    unilateral: Sequence[Unilateral], order: Sequence[Sequence[int]], rates: RatesByLine, found: Responses
+    unilateral: Sequence[Unilateral], order: Sequence[Sequence[int]], given: RatesByLine, known: Responses
 ) -> _Outcome | Problem:
     """Return the sum of the impulses if of groups that act together the first in which one approaches comes first."""
+    rates, found = _without_width(given, known)
     total: Forces = {}
     works: dict[int, Ball] = {}
     normal = found.normal
@@ -403,7 +405,7 @@ def _in_turn(
     for _ in range(_MOST_IN_TURN):
         hit = next((one for one in order if any(now[normal[i]] < -least for i in one)), None)
         if hit is None:
-            return _Outcome(_at_the_limit(total, now, least, found), works, in_turn=True)
+            return _Outcome(_at_the_limit(total, now, least, found, known), works, in_turn=True)
         impulses = impulses_together(unilateral, hit, now, found)
         if isinstance(impulses, Problem):
             return impulses
@@ -418,15 +420,17 @@ def _in_turn(
     return Problem("simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order")
 
 
-def _at_the_limit(total: Forces, now: RatesByLine, least: float, found: Responses) -> Forces:
+def _at_the_limit(total: Forces, now: RatesByLine, least: float, found: Responses, known: Responses) -> Forces:
     """Return impulses that leave no rate at all where impacts in turn have left less than the least that counts.
 
     What is left would be an impact again at the same instant. Of several shares of an impulse that leave nothing one is
-    taken.
+    taken: lines that depend on one another, as far as they are `known`, would share without a bound.
     """
     lines = [a for a, x in now.items() if total.get(a, ZERO) != 0 and float(abs(x)) <= least]
     if all(now[a] == 0 for a in lines):
         return total
+    chosen = independent({b: known.matrix[a][b] for b in lines if not is_zero(known.matrix[a][b])} for a in lines)
+    lines = [lines[k] for k in chosen]
     elimination = Elimination()
     for a in lines:
         left = elimination.add({b: found.matrix[a][b] for b in lines if found.matrix[a][b] != 0}, -now[a])

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.solve import solve_scene
+from tests.core.multibody.relations import geometry
 from tests.core.multibody.table.test_contact_geometry import kinds, states
 from tests.core.multibody.worked_examples import column, read
 
@@ -514,3 +515,38 @@ def test_bounces_that_stick_at_every_impact_go_as_far_as_the_sum_of_their_arcs()
         assert np.abs(found.values[0] - exact).max() <= found.error + 1e-16
     assert answer.events[-1].name == "floor"
     assert abs(answer.events[-1].time - 0.4) <= answer.events[-1].error + 1e-16
+
+
+def test_how_contacts_of_one_body_share_friction_says_nothing_of_the_order_of_impacts() -> None:
+    """A box rests on one corner as another lands: both rub along one line, which depends on itself however it lies."""
+    corners = {"a": [-0.335, -0.591], "b": [0.335, -0.591], "c": [0.335, 0.591], "d": [-0.335, 0.591]}
+    rubs = {"a": [1.0165, 0.8132], "b": 0.1569, "c": 0.6703, "d": [0.704625, 0.5637]}
+    bounces = {"a": 0.2078, "b": 0.5076, "c": 0.7081, "d": 0.7452}
+    box = {
+        "mass": 1.23, "inertia": 0.1892, "at": [0, 1.303], "angle": 0.4976, "velocity": [-0.5996, -1.947],
+        "angular_velocity": 1.435, "places": corners,
+    }  # fmt: skip
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"box": box},
+        "connections": [
+            {
+                "kind": "contact",
+                "name": k,
+                "place": f"box.{k}",
+                "on": {"at": [0, 0], "slope": 0.0},
+                "restitution": bounces[k],
+                "friction": rubs[k],
+            }
+            for k in corners
+        ],
+        "times": [1.0],
+    }
+    told = []
+    for sides in (None, (3, 4, 5), (5, 12, 13)):
+        turned = scene if sides is None else geometry.turned(scene, sides=sides).request
+        problem = solve_scene(read({key: x for key, x in turned.items() if key != "times"}), [1.0]).problem
+        assert problem is not None
+        assert problem.code == "simultaneous-impacts"
+        told.append(problem.candidates)
+    assert told[0] == told[1] == told[2]
