@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check kernels environment openapi judge plans textbook record peers peers-scenes newest clean
+.PHONY: serve test check kernels environment openapi judge plans textbook references record peers peers-scenes newest clean
 .PHONY: browser pictures vendor site release release-contract
 
 serve: $(ENV)/runs
@@ -75,6 +75,10 @@ plans: environment
 # Every textbook question that is asked backwards, some of them for seconds.
 textbook: environment
 	WHOLE_TEXTBOOK=1 $(BIN)/python -m pytest -q tests/service/textbook
+
+# Published problems in pairs of doubles: writes docs/references.md.
+references: environment
+	$(BIN)/python -m benchmarks.references
 
 record: environment
 	$(BIN)/python -m benchmarks.method_record

@@ -73,6 +73,7 @@ def navigation() -> list[Any]:
                 {"Architecture": "architecture.md"},
                 {"Speed": "speed.md"},
                 {"Comparison with peers": "peers.md"},
+                {"Published problems": "references.md"},
                 {"The homework behind it": "source-questions.md"},
                 {"Contributing": "contributing.md"},
                 {"Decisions": [f"decisions/{page.name}" for page in sorted((DOCS / "decisions").glob("*.md"))]},
