@@ -242,8 +242,19 @@ class _Run:
             gaps, _ = self.mechanism.gap_rates(self.state)
             met = [k for k, gap in enumerate(gaps) if gap < TOUCHING]
             self.touching = sorted({*phase.closed, *met, *([i] if kind == "gap" else [])})
+            self._require_apart()
             return True
         return False
+
+    def _require_apart(self) -> None:
+        """Refuse two ends of outlines that meet: each is nearest to the other, and one contact would count twice."""
+        names = [self.mechanism.one_sided[i].name.rpartition(".")[0] for i in self.touching]
+        rows = self.mechanism.rows(self.state, self.touching)
+        lines = rows.lines[[rows.of("push", i)[0] for i in self.touching]]
+        for a, first in enumerate(lines):
+            for b, other in enumerate(lines[:a]):
+                if names[a] == names[b] != "" and np.abs(first - other).max() < TOUCHING:
+                    raise NotSupported("corners that meet round ends")
 
     def _vanished(self, stepper: Stepper, number: int) -> Event:
         """Return when a length is zero that is short: a power of the time left, which f f''/f'^2 tells."""

@@ -56,7 +56,7 @@ def stacked(draw: Draw) -> Unit:
     a, b = draw.name("plank"), draw.name("box")
     bodies: Json = {
         a: {"mass": draw.mass(), "shape": {"kind": "box", "width": 1, "height": 0.1}, "at": draw.at(0, 0.05)},
-        b: {"mass": draw.mass(), "shape": BOX, "at": draw.at(draw.one((0, 0.4, -0.3)), 0.2)},
+        b: {"mass": draw.mass(), "shape": BOX, "at": draw.at(draw.one((0, 0.4, -0.25)), 0.2)},
     }
     bodies[a] |= {"velocity": [0, 0], "angular_velocity": 0}
     bodies[b] |= {"velocity": [draw.one((0, 1, 2)), 0], "angular_velocity": 0}
