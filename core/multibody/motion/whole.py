@@ -304,9 +304,9 @@ class Whole:
             raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
         return acceleration, found
 
-    def turns_with(self, force: Force) -> int | None:
-        """Return the row of the push with which a force turns; None where its direction stays."""
-        return None
+    def turns_with(self, force: Force) -> list[int]:
+        """Return the rows of the pushes with which a force turns: none where its direction stays."""
+        return []
 
     def force(self, force: Force, q: Floats, v: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
         """Return a force at every state, and the sum of the magnitudes of its terms, each of shape (t,)."""

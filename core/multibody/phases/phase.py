@@ -108,10 +108,10 @@ class Phase:
     def determined(self) -> list[bool]:
         """Which of the forces the scene determines; some are zero along an axis at the start alone."""
         multipliers, forces = self.start_forces
-        lines = [self._first_line(force) for force in self.models[0].described.measures.forces]
+        lines = [self._first_lines(force) for force in self.models[0].described.measures.forces]
         return [
-            force.value is not None and not multipliers.elimination.reduced(line, ZERO)[0]
-            for force, line in zip(forces, lines, strict=True)
+            force.value is not None and not any(multipliers.elimination.reduced(line, ZERO)[0] for line in own)
+            for force, own in zip(forces, lines, strict=True)
         ]
 
     def pulls(self, force: int) -> bool:
@@ -119,12 +119,15 @@ class Phase:
         value = self.start_forces[1][force].value
         return value is not None and bool(value > 0)
 
-    def _first_line(self, force: Force) -> Mapping[int, Ball]:
-        """Return the factors of multipliers in a force just after the start, of the first power of time with any."""
+    def _first_lines(self, force: Force) -> list[Mapping[int, Ball]]:
+        """Return the factors of multipliers in a force just after the start, of the first power of time with any.
+
+        What turns with several pushes, as the friction of a shape with its corners, has to know each of them.
+        """
         whole = self.models[0].whole
-        row = whole.turns_with(force)
-        if row is not None:
-            return {row: ONE}
+        rows = whole.turns_with(force)
+        if rows:
+            return [{row: ONE} for row in rows]
         table = whole.measures.table
         for change in (None, table.v, whole.acceleration):
             line = {
@@ -135,8 +138,8 @@ class Phase:
             }
             found = {r: x for r, x in line.items() if not is_zero(x)}
             if found:
-                return found
-        return {}
+                return [found]
+        return [{}]
 
     @property
     def turning(self) -> bool:

@@ -227,11 +227,12 @@ class TurningWhole(Whole):
 
     Attributes
     ----------
-    turning : mapping of str to (Unilateral, int, int)
-        Forces of friction that turn, by name: the measure, the axis of the component, the row of the push.
+    turning : mapping of str to list of (Unilateral, int, int)
+        Forces of friction that turn, by name: of every measure that they are of, itself, the axis of the component,
+        the row of the push. Those of a shape are the sums of those of its corners.
     """
 
-    turning: dict[str, tuple[Unilateral, int, int]] = field(default_factory=dict)
+    turning: dict[str, list[tuple[Unilateral, int, int]]] = field(default_factory=dict)
 
     def multipliers(self, q: Floats, v: Floats) -> Floats:
         """Return the multipliers of every row, shape (t, rows)."""
@@ -256,25 +257,30 @@ class TurningWhole(Whole):
                 found[s, r] = float(solved[count + k].mid())
         return gains, found
 
-    def turns_with(self, force: Force) -> int | None:
-        """Return the row of the push with which a force turns; None where its direction stays."""
-        one, axis, row = self.turning.get(force.name, (None, 0, None))
-        flat = one is None or one.tangents is None or all(is_zero(tangent[axis]) for tangent in one.tangents)
-        return None if flat else row
+    def turns_with(self, force: Force) -> list[int]:
+        """Return the rows of the pushes with which a force turns: none where its direction stays."""
+        return [
+            row
+            for one, axis, row in self.turning.get(force.name, ())
+            if one.tangents is not None and not all(is_zero(tangent[axis]) for tangent in one.tangents)
+        ]
 
     def force(self, force: Force, q: Floats, v: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
         """Return a force at every state, and the sum of the magnitudes of its terms, each of shape (t,)."""
-        if force.name not in self.turning:
-            return super().force(force, q, v, multipliers)
-        one, axis, row = self.turning[force.name]
-        assert one.tangents is not None
-        slip = np.array([_slip(line or {}, v) for line in (one.slip, one.across)])
-        # What begins to slide does so along the first direction.
-        slip[0, ~slip.any(axis=0)] = 1.0
-        length = np.maximum(np.hypot(slip[0], slip[1]), 1e-300)
-        along = (float(one.tangents[0][axis]) * slip[0] + float(one.tangents[1][axis]) * slip[1]) / length
-        push = float(one.kinetic) * multipliers[:, row]
-        return 0.0 - push * along, np.abs(push)
+        parts = self.turning.get(force.name, ())
+        turned = {row for _, _, row in parts}
+        rest = replace(force, terms=[term for term in force.terms if term[0] not in turned])
+        total, size = super().force(rest, q, v, multipliers)
+        for one, axis, row in parts:
+            assert one.tangents is not None
+            slip = np.array([_slip(line or {}, v) for line in (one.slip, one.across)])
+            # What begins to slide does so along the first direction.
+            slip[0, ~slip.any(axis=0)] = 1.0
+            length = np.maximum(np.hypot(slip[0], slip[1]), 1e-300)
+            along = (float(one.tangents[0][axis]) * slip[0] + float(one.tangents[1][axis]) * slip[1]) / length
+            push = float(one.kinetic) * multipliers[:, row]
+            total, size = total - push * along, size + np.abs(push)
+        return total, size
 
 
 def _slip(line: LinearForm, v: Floats) -> Floats:
@@ -301,12 +307,13 @@ def turning_model(
     gain, chosen = accelerations(table)
     motion = TurningSlip(table)
     everything = list(range(len(table.names)))
-    turning = {
-        f"{one.name}.friction.{axis}": (one, i, row)
-        for one, row in zip(unilateral, normal, strict=True)
-        if row is not None and table.rows[row].slide is not None
-        for i, axis in enumerate(COMPONENTS)
-    }
+    turning: dict[str, list[tuple[Unilateral, int, int]]] = {}
+    for one, row in zip(unilateral, normal, strict=True):
+        if row is None or table.rows[row].slide is None:
+            continue
+        for name in (one.name,) if one.whole is None else (one.name, one.whole):
+            for i, axis in enumerate(COMPONENTS):
+                turning.setdefault(f"{name}.friction.{axis}", []).append((one, i, row))
     small = Reduced(table, identity(len(table.names)), table.names)
     whole = TurningWhole(found.measures, small, gain, gain, [(everything, motion)], turning=turning)
     return Modelled(found, whole, [Piece(everything, table, gain, chosen)], start.moved, start.fitted)

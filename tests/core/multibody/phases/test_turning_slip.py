@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from core.balls import precision
 from core.multibody.language.reading import scene_from
 from core.multibody.phases.phases import motion_in_phases
 from core.multibody.phases.turning_slip import TurningSlip
+from core.multibody.solve import solve_scene
 
 
 def test_a_ball_begins_to_slide_from_a_state_with_an_error() -> None:
@@ -46,3 +48,19 @@ def test_a_ball_begins_to_slide_from_a_state_with_an_error() -> None:
     for series, own in zip(about.places, turning.run("fine", late).steps[0].places, strict=True):
         there = sum(float(x) * late**k for k, x in enumerate(own))
         assert float(series[0]) == pytest.approx(there, rel=1e-14, abs=1e-14)
+
+
+def test_the_friction_of_a_shape_turns_with_that_of_its_corners() -> None:
+    """A box that falls askew slides on one corner, then on another: the forces of the shape are the sums of theirs."""
+    box = {"kind": "box", "width": 0.4, "height": 0.2, "depth": 0.3}
+    body = {"mass": 1, "shape": box, "at": [0, 0, 0.5], "velocity": [0, 0, -1], "angular_velocity": [0, 0, 3]}
+    on = {"at": [0, 0, 0], "normal": [0.6, 0, 0.8]}
+    slope = {"kind": "contact", "name": "f", "place": "box", "on": on, "friction": [0.5, 0.25]}
+    scene = {"gravity": [0, 0, -10], "bodies": {"box": body}, "connections": [slope]}
+    answer = solve_scene(scene_from(scene), [0.1, 0.15, 0.18, 0.22], ("trajectory", "forces-in-time"))
+    assert answer.trajectory is not None
+    columns = answer.trajectory.columns
+    for force in ("normal", "friction.x", "friction.y", "friction.z"):
+        parts = [columns[f"f.{k}.{force}"].values for k in range(1, 9)]
+        assert sum(bool(np.any(part)) for part in parts) == 2
+        np.testing.assert_allclose(columns[f"f.{force}"].values, np.sum(parts, axis=0), atol=1e-14)
