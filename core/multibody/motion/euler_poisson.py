@@ -88,8 +88,8 @@ class EulerPoisson(Numerical):
             start=np.array(start),
         )
 
-    def steps(self, kind: str, end: float) -> Run:
-        """Take steps to a time in the units of the arrays.
+    def steps(self, kind: str, end: float, since: Run | None = None) -> Run:
+        """Take steps to a time in the units of the arrays, always from the start: series are those of the axes alone.
 
         Raises
         ------

@@ -54,16 +54,37 @@ CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
 
 @dataclass
 class Run:
-    """Steps in one direction: where they start, their coefficients, and whether a singular place ended them."""
+    """Steps in one direction: where they start, their coefficients, and whether a singular place ended them.
+
+    Attributes
+    ----------
+    starts : ndarray, shape (s + 1, 2)
+        Times, as pairs, and the end of the last step.
+    series : ndarray, shape (s, n, order + 1) or (s, n, order + 1, 2)
+    singular : bool
+    room : ndarray or None
+        What the series is the first part of, where there is room for more.
+    """
 
     starts: Floats
     series: Floats
     singular: bool = False
+    room: Floats | None = field(default=None, repr=False)
 
     @property
     def end(self) -> float:
         """Time reached."""
         return float(self.starts[-1, 0])
+
+    def followed_by(self, more: Run) -> Run:
+        """Return the run whose last step, which ended at a time that was asked for, is replaced by those of another."""
+        kept, total, room = len(self.series) - 1, len(self.series) - 1 + len(more.series), self.room
+        if room is None or len(room) < total:
+            # Twice as much, so that a run which grows step by step is not copied for each.
+            room = np.empty((2 * total, *self.series.shape[1:]))
+            room[:kept] = self.series[:kept]
+        room[kept:total] = more.series
+        return Run(np.concatenate([self.starts[:kept], more.starts]), room[:total], more.singular, room)
 
     def which(self, times: Floats) -> Integers:
         """Return the step in which each time lies."""
@@ -116,11 +137,17 @@ class Numerical(Motion):
         found = self._runs.get(key)
         if found is not None and (abs(found.end) >= abs(end) or found.singular):
             return found
-        self._runs[key] = self.steps(kind, end)
+        self._runs[key] = self.steps(kind, end, found)
         return self._runs[key]
 
-    def steps(self, kind: str, end: float) -> Run:
-        """Take steps to a time in the units of the arrays."""
+    def steps(self, kind: str, end: float, since: Run | None = None) -> Run:
+        """Take steps to a time in the units of the arrays, from the start, or on from a run that does not reach it."""
+        if since is not None and kind != "doubles":
+            # Searches go on and on: what they have behind them is not computed again. The series of doubles do not
+            # hold what their compensated sums left.
+            more = integrate(self.table, self.arrays, self.units, kind, end, since)
+            if more.starts[-1, 0] != more.starts[0, 0]:
+                return since.followed_by(up_to_lost_rank(self.arrays, self.rows, more))
         return up_to_lost_rank(self.arrays, self.rows, integrate(self.table, self.arrays, self.units, kind, end))
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
@@ -252,8 +279,8 @@ class Numerical(Motion):
         return two_to(-self.units.lengths[inverse[0]]) / float(nearest) if nearest > COLLIDED else None
 
 
-def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float) -> Run:
-    """Take steps to a time in the units of the arrays.
+def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float, since: Run | None = None) -> Run:
+    """Take steps to a time in the units of the arrays, from the start, or from where the last step of a run starts.
 
     Raises
     ------
@@ -269,6 +296,10 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
         "check": (CHECK_ORDER, CHECK_TOLERANCE),
     }[kind]
     q, v = state(table, units)
+    clock, before = np.zeros(2), 0
+    if since is not None:
+        last = since.series[-1]
+        q, v, clock, before = last[:, 0].copy(), last[:, 1].copy(), since.starts[-2].copy(), len(since.series) - 1
     shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
     start = (q[:, 0], v[:, 0]) if kind == "doubles" else (q, v)
     take = advance if kind == "doubles" else advance_pairs
@@ -287,7 +318,7 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
             )
         return ended, count
 
-    return run_by(steps, start, shape, max(16, _CHUNK // (16 * len(q) * (order + 1))))
+    return run_by(steps, start, shape, max(16, _CHUNK // (16 * len(q) * (order + 1))), clock, before)
 
 
 def run_by(
@@ -295,6 +326,8 @@ def run_by(
     start: tuple[Floats, Floats],
     shape: tuple[int, ...],
     many: int,
+    clock: Floats | None = None,
+    before: int = 0,
 ) -> Run:
     """Return a run by a function that takes steps until its arrays are full.
 
@@ -308,18 +341,22 @@ def run_by(
         Of the series of one step.
     many : int
         Steps for which there is room at once.
+    clock : ndarray, shape (2,), optional
+        When they start, as a pair; moved along. Zero if omitted.
+    before : int
+        How many were taken until then.
 
     Raises
     ------
     BudgetExceeded, AccuracyUnreachable
         As `integrate`.
     """
-    clock = np.zeros(2)
+    clock = np.zeros(2) if clock is None else clock
     starts, series = [], []
     taken, ended = 0, FULL
     while ended == FULL:
-        if taken > MOST_STEPS:
-            raise BudgetExceeded("steps", taken, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
+        if before + taken > MOST_STEPS:
+            raise BudgetExceeded("steps", before + taken, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
         chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
         ended, count = steps(clock, chunk_starts, chunk)
         starts.append(chunk_starts[:count])
@@ -332,7 +369,7 @@ def run_by(
         # A run of no duration has one step, so that the start can be evaluated.
         single = np.zeros((1, *shape))
         single[0, :, 0], single[0, :, 1] = start
-        return Run(np.zeros((2, 2)), single, ended != DONE)
+        return Run(np.array([clock, clock]), single, ended != DONE)
     return Run(np.concatenate(starts), series[0] if len(series) == 1 else np.concatenate(series), ended != DONE)
 
 

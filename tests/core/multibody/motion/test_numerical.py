@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 
 import mpmath
 import numpy as np
@@ -12,6 +13,7 @@ from core.balls import precision
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.equations.dynamics import accelerations
+from core.multibody.motion.numerical import Run
 from core.multibody.motion.periods import repeating
 from core.multibody.motion.vertical_symmetry import precessing
 from core.multibody.solve import solve_scene
@@ -113,6 +115,52 @@ def test_stiff_springs_are_followed() -> None:
     rigid = solve_scene(read({**scene, "connections": [{"kind": "rod", "a": "p", "b": [0, 0]}]}), [0.5])
     away = column(answer, "p.position").values - column(rigid, "p.position").values
     assert np.linalg.norm(away) < 1e-5
+
+
+@pytest.mark.parametrize(("kind", "apart"), [("reference", 2.0**-68), ("fine", 2.0**-85), ("check", 2.0**-85)])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_run_in_pairs_goes_on_from_where_it_ended(kind: str, apart: float, way: float) -> None:
+    """Its steps are those of a run from the start, to their tolerance and the growth of the rounding of pairs."""
+    with precision(BITS):
+        (whole,), (grown,) = (numerical(points((1, 2), ("0.7", "-1"), (1, 3))) for _ in range(2))
+        right = whole.run(kind, 8.0 * way)
+        for end in np.linspace(0.0, 8.0, 30):
+            found = grown.run(kind, float(end) * way)
+            assert abs(found.end) >= end
+            assert len(found.starts) == len(found.series) + 1
+    assert found.end == right.end
+    np.testing.assert_allclose(found.starts[:, 0], right.starts[:, 0], rtol=1e-12, atol=0)
+    assert np.abs((found.series[:, :, :2] - right.series[:, :, :2]).sum(axis=-1)).max() < apart
+    # What was found before stays as it was.
+    early = grown.run(kind, 1.0 * way)
+    assert early is found
+
+
+def test_steps_that_a_search_takes_grow_with_its_length() -> None:
+    """A search along a stiff motion asks on and on: what lies behind is not followed again."""
+    (one,) = numerical(points((1, 2), ("0.7", "-1"), (1, 3)))
+    taken = []
+    steps = one.steps
+
+    def counted(kind: str, end: float, since: Run | None = None) -> Run:
+        found = steps(kind, end, since)
+        taken.append(len(found.series) - (0 if since is None else len(since.series) - 1))
+        return found
+
+    one.steps = counted  # type: ignore[method-assign]
+    for end in np.linspace(0.0, 8.0, 30):
+        found = one.run("reference", float(end))
+    assert sum(taken) <= len(found.series) + 30
+
+
+def test_a_grown_run_has_no_more_steps_than_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("core.multibody.motion.numerical.MOST_STEPS", 40)
+    monkeypatch.setattr("core.multibody.motion.numerical._CHUNK", 2**14)
+    (one,) = numerical(points((1, 2), ("0.7", "-1"), (1, 3)))
+    ends = iter(np.linspace(0.0, 40.0, 80).tolist())
+    with pytest.raises(BudgetExceeded, match="steps"):
+        list(map(partial(one.run, "reference"), ends))
+    assert 1.0 < next(ends) < 39.0
 
 
 def test_a_motion_that_would_take_too_many_steps_is_refused() -> None:
