@@ -74,8 +74,8 @@ class AssessmentRequest(Request):
     )
     locale: Locale | None = Field(
         default=None,
-        description="Of each `text`: its decimal mark is a point (en) or a comma (de, es, fr). "
-        "Without it a comma is one where it cannot group digits.",
+        description="Of each `text`: its decimal mark is a point (en) or a comma (de, es, fr), and units "
+        "may be words of its language (Grad, tr/min). Without it a comma is one where it cannot group digits.",
     )
     language: Language = Field(default="en", description="Of the feedback.")
     steps: dict[str, CarriedStep] | None = Field(

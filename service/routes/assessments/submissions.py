@@ -33,7 +33,7 @@ class ClaimDocument(View):
         "as 6,28 s or 2*pi s or 3·10² N. What can be read in two ways is a format error; see locale."
     )  # fmt: skip
     times: list[float] | None = Field(
-        default=None, description="Of the samples in value, at any times (s); of a column of samples."
+        default=None, description="Of the samples in value or in the list of text, at any times (s)."
     )
 
 
