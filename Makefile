@@ -19,6 +19,12 @@ test: environment
 	@$(MAKE) --no-print-directory -j2 check kernels
 	$(BIN)/python -m pytest -q -n 3 --dist worksteal
 
+# All that is drawn or listed, of which `make test` takes a sample; before a release, and after a change of a kernel.
+.PHONY: thorough
+
+thorough: kernels
+	THOROUGH=1 $(BIN)/python -m pytest -q -n 3 --dist worksteal
+
 check: environment
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .

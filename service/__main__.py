@@ -33,6 +33,11 @@ PREFIX = Settings.model_config["env_prefix"]
 ALIKE_SETTINGS = 0.9
 """Share of its letters, the prefix among them, that a variable has in common with a setting that it misspells."""
 
+HANGING_SECONDS = 30
+"""Time in which a server process tells its supervisor that it lives, or is killed with all that it answers.
+
+uvicorn's own 5 s are too few for one that only waits for a core, beside others that fill the machine."""
+
 
 def _written(default: object) -> object:
     return "none" if default in ("", None) else default
@@ -143,6 +148,7 @@ def server_options(settings: Settings) -> dict[str, Any]:
         "forwarded_allow_ips": settings.forwarded_allow_ips,
         "timeout_graceful_shutdown": settings.shutdown_seconds,
         "timeout_keep_alive": settings.keep_alive_seconds,
+        "timeout_worker_healthcheck": HANGING_SECONDS,
     }
 
 

@@ -19,7 +19,9 @@ import generate
 import pytest
 from hypothesis import settings
 
-settings.register_profile("fixed", derandomize=True, deadline=None)
+from tests.drawn import draws
+
+settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=draws(100))
 settings.load_profile("fixed")
 
 # The client's modules that are made when it is built.

@@ -27,6 +27,7 @@ from tests.contracts.scene_contracts import (
     span_of,
     what_makes_no_sense_is_refused,
 )
+from tests.drawn import draws
 
 slope = st.floats(0.02, math.pi / 2)
 size = st.floats(-6, 6).map(lambda power: 10.0**power)
@@ -156,7 +157,7 @@ def test_every_scene_of_the_catalogue_is_under_contract() -> None:
     assert kinds == ["unwinding-shafts", "rod-in-hole", "chain-on-wedge"]
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(deadline=None, max_examples=draws(60), derandomize=True)
 @given(scene=any_scene)
 def test_energy_is_conserved_but_for_the_stated_cost_of_jerks(scene: Any) -> None:
     answer = scene.answer(np.linspace(0, span_of(scene), 33))
@@ -177,7 +178,7 @@ def test_energy_is_conserved_but_for_the_stated_cost_of_jerks(scene: Any) -> Non
     assert np.all(lost <= most + 1e-11 * scale)
 
 
-@settings(deadline=None, max_examples=90, derandomize=True)
+@settings(deadline=None, max_examples=draws(90), derandomize=True)
 @given(scene=any_scene)
 def test_forces_balance_the_motion_of_the_samples(scene: Any) -> None:
     """Newton-Euler with derivatives by differences of the samples: nothing of the scene's own formulas enters."""
@@ -217,7 +218,7 @@ def test_forces_balance_the_motion_of_the_samples(scene: Any) -> None:
         assert np.max(np.abs(left - right), initial=0) <= rough
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(deadline=None, max_examples=draws(60), derandomize=True)
 @given(scene=any_scene)
 def test_constraints_hold_and_positions_are_the_integrals_of_velocities(scene: Any) -> None:
     s = samples_of(scene, np.linspace(0, span_of(scene), 41))
@@ -246,13 +247,13 @@ def test_constraints_hold_and_positions_are_the_integrals_of_velocities(scene: A
             assert np.max(spare) <= 0 or s["position"][0] in (0.0, scene.length)
 
 
-@settings(deadline=None, max_examples=40, derandomize=True)
+@settings(deadline=None, max_examples=draws(40), derandomize=True)
 @given(scene=any_scene, data=st.data())
 def test_each_output_alone_is_what_it_is_among_all(scene: Any, data: Any) -> None:
     each_output_alone_is_what_it_is_among_all(scene, data.draw(st.sampled_from(figures_of(scene))))
 
 
-@settings(deadline=None, max_examples=40, derandomize=True)
+@settings(deadline=None, max_examples=draws(40), derandomize=True)
 @given(scene=any_scene)
 def test_samples_depend_on_their_own_time_only_and_come_in_the_order_requested(scene: Any) -> None:
     assume(span_of(scene) > 0)

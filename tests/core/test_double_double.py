@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core import double_double as dd
+from tests.drawn import draws
 
 UNIT = mpmath.mpf(2) ** -106
 ordinary = st.floats(1e-100, 1e100) | st.floats(-1e100, -1e-100)
@@ -36,7 +37,7 @@ def test_sums_and_products_of_doubles_are_exact(a, b):
 
 
 @given(pairs, pairs)
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 def test_operations_are_right_to_two_units_of_106_bits(a, b):
     x, y = value(a), value(b)
     assert abs(value(dd.dd_mul(*a, *b)) - x * y) <= 3 * UNIT * abs(x * y)
@@ -48,7 +49,7 @@ def test_operations_are_right_to_two_units_of_106_bits(a, b):
 
 
 @given(st.floats(-600, 600), st.floats(-1, 1))
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 def test_exponential(x, tail):
     pair = dd.fast_two_sum(x, x * tail * 2.0**-54)
     exact = mpmath.exp(value(pair))

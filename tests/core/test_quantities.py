@@ -22,6 +22,7 @@ import core
 from core.errors import InvalidParameter
 from core.quantities import Quantity, check
 from core.rows import Rows
+from tests.drawn import draws
 
 Fault = tuple[tuple[str | int, ...], str]
 
@@ -213,7 +214,7 @@ def test_the_compiled_check_is_the_plain_one(owner: type, data: st.DataObject) -
         assert wanted is None
 
 
-@settings(deadline=None, max_examples=400, derandomize=True)
+@settings(deadline=None, max_examples=draws(400), derandomize=True)
 @given(data=st.data())
 def test_ranges_are_enforced_at_their_ends(data: st.DataObject) -> None:
     end = st.floats(-5, 5)
@@ -231,7 +232,7 @@ def test_ranges_are_enforced_at_their_ends(data: st.DataObject) -> None:
     assert quantity.test(value) is (type(value) is float and rule is None)
 
 
-@settings(deadline=None, max_examples=400, derandomize=True)
+@settings(deadline=None, max_examples=draws(400), derandomize=True)
 @given(data=st.data())
 def test_rows_are_read_or_refused_at_their_first_fault(data: st.DataObject) -> None:
     whole = data.draw(st.booleans())

@@ -6,6 +6,8 @@ import mpmath as mp
 import numpy as np
 
 from tests.examples.scene_columns import columns, times
+from tests.oracles.elliptic import real_of
+from tests.oracles.minimal_coordinates import cos, motion
 
 
 def test_the_fall_with_drag(answer_of):
@@ -32,14 +34,14 @@ def test_the_driven_duffing_oscillator(answer_of):
     answer = answer_of("scenes/driven-duffing-oscillator")
     found, stated = columns(answer), answer["trajectory"]["columns"]
     with mp.workdps(30):
-        b, drive, w = mp.mpf("0.25"), mp.mpf("0.3"), mp.mpf("1.2")
+        b = mp.mpf("0.25")
 
-        def equation(t, y):
-            away = y[0] - 1
-            return [y[1], -away - b * away**3 + drive * mp.cos(w * t)]
+        def potential(phase, x):
+            square = (x - 1) * (x - 1)
+            return square / 2 + square * square / 16 - x * cos(phase) * 0.3
 
-        solution = mp.odefun(equation, 0, [mp.mpf("1.5"), mp.mpf(0)], tol=mp.mpf("1e-22"))
-        exact = np.array([solution(t) for t in map(mp.mpf, times(answer))])
+        states = motion(lambda phase, x: [(1, x)], potential, [0, 1.5], [1.2, 0], times(answer), driven=1)
+        exact = np.array([(real_of(q[1]), real_of(v[1])) for q, v in states])
         pull = (exact[:, 0] - 1) + b * (exact[:, 0] - 1) ** 3
     for name, expected in (
         ("bob.position", exact[:, 0]),

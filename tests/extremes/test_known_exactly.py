@@ -36,12 +36,13 @@ from core.systems.methods import ExplicitEuler, RungeKutta4
 from core.systems.solve import solve
 from core.work_precision import work_precision
 from tests.core.certified.judge import OWN_ERROR, _distance
+from tests.drawn import draws
 
 DIGITS = 40
 ULP = 2.0**-52
 DECK = Cuboid(edges=(0.088, 0.063, 0.016), mass=0.094)
 
-plain = settings(deadline=None, derandomize=True, max_examples=120)
+plain = settings(deadline=None, derandomize=True, max_examples=draws(120))
 length = st.floats(0.01, 10.0).map(lambda x: float(f"{x:.3g}"))
 whole = st.integers(1, 30)
 nearness = st.sampled_from((0.0, ULP, 2 * ULP, 8 * ULP, 100 * ULP, 1e-9, 0.3))

@@ -22,6 +22,7 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
+from tests.drawn import draws
 from tests.service.conftest import client_of, inline_service
 
 PATH = "/v1/assessments"
@@ -336,7 +337,7 @@ def numbers_in(node: Any) -> list[float]:
     return [float(node)] if type(node) in (int, float) else []
 
 
-@settings(max_examples=40)
+@settings(max_examples=draws(40))
 @given(scale=st.floats(1.2, 50.0), seed=st.integers(0, 10**6))
 def test_without_reveal_equal_verdicts_are_equal_bytes(scale: float, seed: int) -> None:
     """Of two questions with different references, the answers to what has the same verdict are the same."""

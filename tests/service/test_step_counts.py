@@ -14,6 +14,7 @@ from core.systems.methods import ExplicitEuler, RungeKutta4
 from service.routes.step_counts import UNCOUNTABLE, least_evaluations, steps
 from service.schemas import Span
 from tests.core.systems.systems import rigid_body
+from tests.drawn import draws
 
 TIME = st.floats(allow_nan=False, allow_infinity=False)
 TIMES = st.lists(TIME, min_size=1, max_size=6) | st.builds(
@@ -38,7 +39,7 @@ class TestTimes:
     @example(-1.0, 2.0, 3, 0.3)
     @example(3.0, 0.0, 1, 1.0)
     @example(0.0, 3.0, 1, 1.0)
-    @settings(deadline=None, derandomize=True, max_examples=300)
+    @settings(deadline=None, derandomize=True, max_examples=draws(300))
     def test_steps_of_a_span_are_those_of_its_times(self, start: float, stop: float, count: int, step: float) -> None:
         span = Span(start=start, stop=stop, count=count)
         # A time of a span that rounding moves off the grid, or onto it, is one step.

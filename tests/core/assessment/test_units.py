@@ -15,6 +15,7 @@ from core.assessment import units
 from core.assessment.units import factor
 from core.errors import InvalidParameter
 from core.work import WorkLimitReached, work_limit
+from tests.drawn import draws
 
 TURN = 2.0 * math.pi
 KNOWN = [
@@ -126,7 +127,7 @@ def test_hostile_texts_are_no_units(hostile: str) -> None:
         factor(hostile, "kg")
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=draws(200), deadline=None, derandomize=True)
 @given(text=st.text(max_size=45), unit=st.sampled_from(["s", "1", "rad s^-1", "kg m^2"]))
 def test_any_text_is_a_unit_or_a_wrong_one(text: str, unit: str) -> None:
     with suppress(InvalidParameter):

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from core.bodies.closed_surface import closed
 from core.errors import InvalidParameter, OpenMesh
 from tests.core.bodies.polyhedra import CUBOID, TETRAHEDRON, cuboid, icosphere
+from tests.drawn import draws
 
 SHAPES = [
     (np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), np.array(TETRAHEDRON)),
@@ -31,7 +32,7 @@ def closes(faces: np.ndarray) -> bool:
     return all(n == 1 and count[b, a] == 1 for (a, b), n in count.items())
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(shape, st.randoms(use_true_random=False))
 def test_faces_in_any_order_from_any_corner_close_as_they_are(which: int, random) -> None:
     vertices, faces = SHAPES[which]
@@ -41,7 +42,7 @@ def test_faces_in_any_order_from_any_corner_close_as_they_are(which: int, random
     assert closed(vertices, given_faces) is given_faces
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(shape, st.randoms(use_true_random=False))
 def test_corners_of_each_triangle_s_own_are_joined_by_their_places(which: int, random) -> None:
     vertices, faces = SHAPES[which]
@@ -57,7 +58,7 @@ def test_corners_of_each_triangle_s_own_are_joined_by_their_places(which: int, r
     assert not found.flags.writeable
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(shape, st.randoms(use_true_random=False))
 def test_every_kind_of_damage_is_reported_with_its_face(which: int, random) -> None:
     vertices, faces = SHAPES[which]

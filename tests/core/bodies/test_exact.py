@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from core.bodies import exact
 from core.errors import InvalidParameter
+from tests.drawn import draws
 
 number = st.floats(-1e3, 1e3)
 quaternion = st.lists(number, min_size=4, max_size=4).filter(any)
@@ -58,7 +59,7 @@ def test_what_is_too_large_is_refused() -> None:
             exact.pair(x)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=draws(50))
 @given(quaternion)
 def test_a_rotation_is_exactly_orthogonal(q: list[float]) -> None:
     turn = exact.rotation(q)
@@ -73,7 +74,7 @@ def test_a_rotation_takes_body_to_space() -> None:
     assert exact.rotation([1e-200, 1e-200, 0, 0]) == [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(quaternion, st.lists(number, min_size=6, max_size=6))
 def test_a_rotated_tensor_has_the_same_invariants(q: list[float], entries: list[float]) -> None:
     xx, yy, zz, xy, xz, yz = map(Fraction, entries)
@@ -84,7 +85,7 @@ def test_a_rotated_tensor_has_the_same_invariants(q: list[float], entries: list[
     assert determinant(turned) == determinant(tensor)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(st.lists(number, min_size=3, max_size=3), st.floats(1e-3, 1e3))
 def test_a_point_mass_away_from_an_axis(offset: list[float], mass: float) -> None:
     nothing = [[Fraction(0)] * 3] * 3

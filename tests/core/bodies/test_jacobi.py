@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.jacobi import jacobi
+from tests.drawn import draws
 
 SQUARE = 2.0**-106
 TURN = 8 * 4 * SQUARE
@@ -50,7 +51,7 @@ def of_mpmath(a: list[list[Fraction]]) -> mpmath.matrix:
     return mpmath.matrix([[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in a])
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(tensors)
 def test_eigenvalues_of_any_tensor(entries: list[tuple[float, float]]) -> None:
     a, e = with_tails(entries)
@@ -65,7 +66,7 @@ def test_eigenvalues_of_any_tensor(entries: list[tuple[float, float]]) -> None:
             assert abs(g - w) <= ALL_TURNS * size + 5e-324
 
 
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 @given(tensors)
 def test_eigenvectors_are_a_right_handed_frame_in_which_the_tensor_is_diagonal(entries) -> None:
     a, e = with_tails(entries)
@@ -90,7 +91,7 @@ grades = st.tuples(*3 * [st.floats(-40, 0).map(lambda p: 10.0**p)])
 well = st.tuples(*3 * [st.floats(-0.3, 0.3)])
 
 
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 @given(grades, well)
 def test_small_eigenvalues_of_a_graded_positive_tensor_are_accurate_relative_to_their_size(scale, cross) -> None:
     """Demmel and Veselic: tensor D A D, A near to 1, D of any grades; the error is relative to each eigenvalue."""
@@ -107,7 +108,7 @@ def test_small_eigenvalues_of_a_graded_positive_tensor_are_accurate_relative_to_
             assert abs(g - w) <= ALL_TURNS / 0.4 * abs(w)
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.permutations(range(3)), st.tuples(entry, entry, entry, entry))
 def test_an_axis_that_is_decoupled_is_left_to_the_last_bit(order, numbers) -> None:
     i, j, k = order

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from core.bodies.exact import Matrix, parallel_axis, rotated, rotation
 from core.bodies.mass_moments import BITS, MassMoments
+from tests.drawn import draws
 
 UNIT = Fraction(1, 2**BITS)
 
@@ -58,7 +59,7 @@ def in_fixed_point(parts: list[Any]) -> MassMoments:
 
 
 @given(st.lists(bodies, min_size=1, max_size=3))
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=draws(60), deadline=None, derandomize=True)
 def test_the_sum_is_the_rational_sum(parts: list[Any]) -> None:
     mass, center, inertia = together(parts)
     found_mass, found_center, found_inertia = in_fixed_point(parts).properties()
@@ -73,7 +74,7 @@ def test_the_sum_is_the_rational_sum(parts: list[Any]) -> None:
 
 
 @given(bodies, quaternions)
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=draws(40), deadline=None, derandomize=True)
 def test_turning_back_is_to_have_turned_nothing(body: Any, attitude: Any) -> None:
     w, x, y, z = attitude
     assume(any((x, y, z)))

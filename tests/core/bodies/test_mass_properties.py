@@ -18,6 +18,7 @@ from core.bodies.mesh import Mesh
 from core.bodies.solids import Cuboid
 from core.errors import InvalidParameter, NotApplicable
 from core.notices import Notice
+from tests.drawn import draws
 
 THIRD = Fraction(1, 3)
 TENSOR = [[Fraction(2, 3), Fraction(1, 7), Fraction(0)], [Fraction(1, 7), THIRD, THIRD / 4], [0, THIRD / 4, THIRD * 2]]
@@ -34,7 +35,7 @@ def test_a_fraction_is_stored_with_106_bits() -> None:
     assert found.mass == 1 / 3
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=draws(60))
 @given(st.lists(st.floats(-1e6, 1e6), min_size=3, max_size=3))
 def test_the_parallel_axis_theorem(point: list[float]) -> None:
     found = body()
@@ -162,7 +163,7 @@ def test_axes_about_a_pin_are_exact_where_the_centre_of_mass_lies_on_one():
     assert not beside.principal_of_motion.rounding.exact_zeros
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.integers(2, 40), st.integers(0, 2**32), st.sampled_from((1e-140, 1.0, 1e140)))
 def test_few_points_summed_exactly(count, seed, size):
     rng = np.random.default_rng(seed)

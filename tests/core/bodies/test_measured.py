@@ -20,6 +20,7 @@ from core.certified.free_rotation import CertifiedRotation
 from core.errors import InvalidParameter, MechanicsError, UnphysicalInertia
 from core.rotation.precession.precession import precession
 from core.rotation.torque_free import TorqueFree
+from tests.drawn import draws
 
 PAIR = Fraction(1, 10**29)
 """What a value and a tail are right to, as a share of the largest component."""
@@ -72,7 +73,7 @@ def judge(masses: Sequence[float], positions: Any) -> None:
 coordinate = st.floats(-1, 1, allow_subnormal=False)
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=draws(80))
 @given(
     st.lists(st.tuples(st.floats(1e-3, 1e3), coordinate, coordinate, coordinate), min_size=2, max_size=12),
     st.sampled_from([0.0, 1e6, 1e9]),
@@ -258,7 +259,7 @@ def test_two_moments_of_zero_are_refused(moments: Any) -> None:
     assert "thin rod" in str(caught.value.remedy)
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(deadline=None, max_examples=draws(60), derandomize=True)
 @given(
     size=st.floats(1e-100, 1e100),
     along=st.integers(0, 2),
@@ -290,7 +291,7 @@ def test_a_thin_rod_has_mass_properties_and_turns_across_itself_alone(size: floa
             turned()
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=draws(60))
 @given(st.integers(0, 2**32), st.integers(-900, 900))
 def test_rounding_does_not_make_a_needle_impossible(seed: int, exponent: int) -> None:
     axis = np.random.default_rng(seed).normal(size=3)

@@ -14,6 +14,7 @@ from core.bodies.mass_properties import MassProperties
 from core.bodies.mesh import Mesh
 from core.errors import InvalidParameter, OpenMesh, UnphysicalInertia
 from tests.core.bodies.polyhedra import TETRAHEDRON, Faces, Vertices, cuboid, exact_properties, icosphere
+from tests.drawn import draws
 
 PAIR = Fraction(1, 10**29)
 """What a value and a tail are right to, as a share of the largest component."""
@@ -100,7 +101,7 @@ coordinate = st.floats(-1, 1, allow_subnormal=False)
 corners = st.lists(st.lists(coordinate, min_size=3, max_size=3), min_size=4, max_size=4)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=draws(60))
 @given(corners, st.sampled_from([0.0, 1.0, 1e6, 1e9]), st.floats(1e-3, 1e3))
 def test_any_tetrahedron(vertices: Vertices, offset: float, density: float) -> None:
     vertices = [[x + offset for x in vertex] for vertex in vertices]

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.point_sums import first_moments, second_moments
+from tests.drawn import draws
 
 SQUARE = Fraction(2) ** -106
 
@@ -36,7 +37,7 @@ def whole(value: np.ndarray, tail: np.ndarray) -> list[list[Fraction]]:
     ]
 
 
-@settings(deadline=None, derandomize=True, max_examples=80)
+@settings(deadline=None, derandomize=True, max_examples=draws(80))
 @given(points)
 def test_mass_and_centre(given_points) -> None:
     masses, positions, tails = arrays(given_points)
@@ -53,7 +54,7 @@ def test_mass_and_centre(given_points) -> None:
         assert abs(got[1 + j] - want) <= (4 + 3 * n + 3 * n + 4) * SQUARE * (size + abs(want))
 
 
-@settings(deadline=None, derandomize=True, max_examples=80)
+@settings(deadline=None, derandomize=True, max_examples=draws(80))
 @given(points, st.tuples(places, places, places))
 def test_second_moments_about_any_point(given_points, middle) -> None:
     masses, positions, tails = arrays(given_points)

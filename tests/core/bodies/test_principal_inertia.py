@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from core.bodies.principal_inertia import GIVEN, ROUNDED_ONCE, PrincipalInertia, summed
 from core.errors import InvalidParameter
+from tests.drawn import draws
 
 CONTEXT = mp.mp.clone()
 CONTEXT.dps = 80
@@ -44,7 +45,7 @@ def symmetric(rng: np.random.Generator) -> np.ndarray:
     return np.triu(a) + np.triu(a, 1).T
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=draws(150))
 @given(st.integers(0, 2**32), st.integers(-900, 900), st.booleans())
 def test_any_symmetric_tensor_at_any_scale(seed: int, exponent: int, tailed: bool) -> None:
     rng = np.random.default_rng(seed)
@@ -54,7 +55,7 @@ def test_any_symmetric_tensor_at_any_scale(seed: int, exponent: int, tailed: boo
     assert max(errors) < 1e-30
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=draws(100))
 @given(st.integers(0, 2**32), st.floats(-12, 0), st.floats(-12, 0))
 def test_small_moments_of_a_graded_tensor_are_right_to_their_own_size(seed: int, p: float, q: float) -> None:
     # D H D with H well conditioned: Demmel and Veselic (1992) bound the relative error by the condition of H alone.
@@ -128,7 +129,7 @@ def test_arrays_cannot_be_written() -> None:
         found.moments[0] = 0.0
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=draws(80))
 @given(st.integers(0, 2**32), st.integers(4, 60), st.booleans())
 def test_nearly_equal_moments(seed: int, bits: int, lower: bool) -> None:
     rng = np.random.default_rng(seed)
@@ -142,7 +143,7 @@ def test_nearly_equal_moments(seed: int, bits: int, lower: bool) -> None:
     assert gap == pytest.approx(2.0**-bits, abs=4e-15)
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=draws(80))
 @given(st.integers(0, 2**32), st.sampled_from([(0, 1), (0, 2), (1, 2)]), st.floats(-40, 0))
 def test_one_product_of_inertia_and_tails(seed: int, place: tuple[int, int], size: float) -> None:
     rng = np.random.default_rng(seed)

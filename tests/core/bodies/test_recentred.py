@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.recentred import Recentred
+from tests.drawn import draws
 
 # Of one axis, and at most 2^900 apart in size, so that nothing falls below the smallest double when it is scaled.
 anywhere = st.floats(-1e150, 1e150).filter(lambda x: x == 0.0 or abs(x) > 1e-110)
@@ -25,7 +26,7 @@ def rows(data: st.DataObject) -> np.ndarray:
     return np.array(columns).T.copy()
 
 
-@settings(deadline=None, derandomize=True, max_examples=80)
+@settings(deadline=None, derandomize=True, max_examples=draws(80))
 @given(st.data())
 def test_no_point_moves_by_anything(data: st.DataObject) -> None:
     points = rows(data)
@@ -45,7 +46,7 @@ def test_no_point_moves_by_anything(data: st.DataObject) -> None:
         assert largest >= 0.5 or largest == 0.0
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.floats(allow_nan=False, allow_infinity=False), st.integers(1, 5))
 def test_a_coordinate_that_all_share_is_zero(x: float, n: int) -> None:
     about = Recentred.on(np.full((n, 3), x))
@@ -54,7 +55,7 @@ def test_a_coordinate_that_all_share_is_zero(x: float, n: int) -> None:
     assert about.reference == [Fraction(x)] * 3
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.lists(st.tuples(anywhere, anywhere, anywhere), min_size=2, max_size=6))
 def test_the_reference_is_the_middle_of_the_box(points) -> None:
     about = Recentred.on(np.array(points))

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from core.bodies.surface_integrals import connected_surfaces, faces_without_area, signed_tetrahedra
 from tests.core.bodies.polyhedra import CUBOID, TETRAHEDRON, integral
+from tests.drawn import draws
 
 SQUARE = Fraction(2) ** -106
 
@@ -62,7 +63,7 @@ def test_integrals_over_the_inside(surface, share) -> None:
     assert abs(Fraction(magnitude) - size) <= (3 + 7 + 3 * len(faces)) * Fraction(2) ** -53 * size
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(vertex, vertex, vertex, st.integers(-(2**20), 2**20))
 def test_only_corners_on_one_line_have_no_area(a, b, c, along) -> None:
     faces = np.array([[0, 1, 2], [0, 1, 3]])
@@ -82,7 +83,7 @@ def area_squared(corners: np.ndarray) -> Fraction:
     return sum(((p[i - 2] * q[i - 1] - p[i - 1] * q[i - 2]) ** 2 for i in range(3)), Fraction(0))
 
 
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 @given(st.data())
 def test_surfaces_are_distinguished_by_their_vertices(data: st.DataObject) -> None:
     n = data.draw(st.integers(3, 14))

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from core.bodies.principal_inertia import PrincipalInertia
 from core.bodies.validity import TOLERANCE, Validity
+from tests.drawn import draws
 
 SCALES = [1e-300, 1e-16, 1.0, 1e150, 1e300]
 
@@ -41,7 +42,7 @@ def test_a_negative_moment_is_named() -> None:
     assert "positive-moments" in names
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=draws(200))
 @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 3, st.floats(0.01, 1)), min_size=1, max_size=6), st.integers(-400, 400))
 def test_any_points_are_matter(points: list[tuple[float, float, float, float]], exponent: int) -> None:
     r, m = np.ldexp(np.array(points)[:, :3], exponent), np.array(points)[:, 3]

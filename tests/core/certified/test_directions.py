@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from core.balls import Undetermined, precision
 from core.certified.directions import TIE_BITS, floor_of_directions, oriented
 from core.digits.decimals import FLOOR_IN_DIGITS
+from tests.drawn import draws
 
 component = st.integers(-5, 5)
 
@@ -18,7 +19,7 @@ def balls(vector) -> tuple[arb, arb, arb]:
     return tuple(arb(x) for x in vector)
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(st.tuples(component, component, component))
 def test_the_nearest_body_axis_decides_and_of_equal_ones_the_first(vector) -> None:
     assume(any(vector))

@@ -11,6 +11,7 @@ from core.bodies.exact_inertia import ExactInertia
 from core.bodies.exact_mass import ExactMass
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import BudgetExceeded, InvalidParameter
+from tests.drawn import sampled
 from tests.oracles.cases import Case, cases
 from tests.oracles.free_rotation import (
     flip_interval,
@@ -20,7 +21,7 @@ from tests.oracles.free_rotation import (
     reference_attitude,
 )
 
-CASES = list(cases())
+CASES = sampled(cases(), __name__)
 START = (1.0, 2.0, -3.0, 0.5)
 T_HANDLE = ("837.2", "714", "437.7"), ("1", "10", "1")
 

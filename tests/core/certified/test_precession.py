@@ -7,10 +7,11 @@ from core.bodies.exact import rotated, rotation
 from core.bodies.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
+from tests.drawn import sampled
 from tests.oracles.cases import Case, cases
 from tests.oracles.free_rotation import precession_per_period
 
-CASES = list(cases())
+CASES = sampled(cases(), __name__)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

@@ -26,6 +26,7 @@ from core.elliptic.functions import (
 )
 from core.elliptic.lattice import lattice
 from tests.core.elliptic.parameters import jacobi, moduli
+from tests.drawn import draws
 from tests.oracles.elliptic import Periodic
 
 ULP = 2.0**-53
@@ -89,7 +90,7 @@ def test_a_phase_is_split_at_its_nearest_integer_up_to_the_last():
 
 
 @given(st.integers(-(2**50), 2**50))
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 def test_parity_of_quarters_is_that_of_whole_numbers(n):
     assert half_parity(float(n)) == (n % 2 == 1, -1.0 if (n // 2) % 2 else 1.0)
 
@@ -103,7 +104,7 @@ def tail_of(x: float, part: float) -> float:
 
 
 @given(quarters, part_of_ulp)
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(deadline=None, derandomize=True, max_examples=draws(500))
 def test_sine_and_cosine_of_a_quarter_round_once(r, part):
     tail = tail_of(r, part)
     with mpmath.workdps(60):
@@ -115,7 +116,7 @@ def test_sine_and_cosine_of_a_quarter_round_once(r, part):
 
 
 @given(st.floats(-690, 690) | st.floats(-1, 1) | st.floats(-300, 0).map(lambda e: 10.0**e), part_of_ulp)
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(deadline=None, derandomize=True, max_examples=draws(500))
 def test_hyperbolic_functions_have_full_relative_precision(x, part):
     tail = tail_of(x, part)
     with mpmath.workdps(60):
@@ -126,7 +127,7 @@ def test_hyperbolic_functions_have_full_relative_precision(x, part):
 
 
 @given(st.floats(-1100, 1100) | st.floats(-40, 40), part_of_ulp)
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(deadline=None, derandomize=True, max_examples=draws(500))
 def test_separatrix_down_to_nothing(x, part):
     tail = tail_of(x, part)
     with mpmath.workdps(60):
@@ -153,7 +154,7 @@ def theta_series(sine, cosine, z, q) -> tuple:
 
 
 @given(st.floats(0.0, 0.0433) | st.floats(-300, -2).map(lambda e: 10.0**e), quarters)
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 def test_circular_theta_functions(q, r):
     s, c = math.sin(0.5 * math.pi * r), math.cos(0.5 * math.pi * r)
     with mpmath.workdps(50):
@@ -168,7 +169,7 @@ def test_circular_theta_functions(q, r):
 
 
 @given(st.floats(0.0, 1.0), st.floats(1.5707963267948966, 340.0))
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 def test_hyperbolic_theta_functions(part, scale):
     """Jacobi's imaginary transformation: arguments up to half a quarter period, where q'^(1/2) sinh^2 is 1/4."""
     with mpmath.workdps(60):
@@ -188,7 +189,7 @@ def test_hyperbolic_theta_functions(part, scale):
     quarters,
     part_of_ulp,
 )
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 def test_jacobian_functions_at_a_phase_to_the_ends_of_both_parameters(least, near_one, n, r, part):
     tail = tail_of(r, part)
     m, m1 = (1.0 - least, least) if near_one else (least, 1.0 - least)

@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.elliptic.integrals import agm_dd, rf_of_roots
+from tests.drawn import draws
 
 U = 2.0**-53
 SQUARE = 2.0**-106
@@ -42,7 +43,7 @@ small = decades.filter(lambda x: x <= 0.5) | halves
 """The smaller of m and m1, down to 1e-300."""
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(st.floats(-285, 0).map(lambda e: 10.0**e), st.floats(-1, 1))
 def test_arithmetic_geometric_mean(k: float, part: float) -> None:
     tail = part * 0.49 * math.ulp(k) if k > 1e-270 else 0.0
@@ -55,7 +56,7 @@ far_below = st.floats(-280, 0).map(lambda e: 10.0**e)
 roots = st.floats(-60, 60).map(lambda e: 10.0**e)
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(far_below | st.just(0.0), far_below, st.floats(0.1, 10.0), st.permutations(range(3)))
 def test_carlson_s_integral_of_roots_in_any_order(a: float, b: float, c: float, order: list[int]) -> None:
     values = [(a, b, c)[k] for k in order]

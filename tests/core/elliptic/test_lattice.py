@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from core.elliptic.lattice import lattice, periods, theta_constants
 from tests.core.elliptic.parameters import moduli
+from tests.drawn import draws
 
 U = 2.0**-53
 SQUARE = 2.0**-106
@@ -43,7 +44,7 @@ def _sixty_digits():
         yield
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(st.floats(0.0, 0.05) | st.floats(-300, -2).map(lambda e: 10.0**e))
 def test_theta_constants_are_right_to_the_terms_that_are_formed_in_doubles(q: float) -> None:
     t3h, t3l, t4h, t4l, ph, pl = theta_constants(q, 0.0)
@@ -57,7 +58,7 @@ def test_theta_constants_are_right_to_the_terms_that_are_formed_in_doubles(q: fl
         near(number(got), want, 24 * SQUARE + 4 * U * power)
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(small, sides)
 def test_quarter_periods_both_ways(least: float, near_one: bool) -> None:
     pairs, m, m1 = given_moduli(least, near_one)
@@ -77,7 +78,7 @@ def test_quarter_periods_both_ways(least: float, near_one: bool) -> None:
         near(number((found.mean, found.mean_tail)), mpmath.pi / 2 / other, few)
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(small, sides)
 def test_constants_of_the_quotients_are_powers_of_moduli_and_nome(least: float, near_one: bool) -> None:
     pairs, m, m1 = given_moduli(least, near_one)
@@ -100,7 +101,7 @@ def test_constants_of_the_quotients_are_powers_of_moduli_and_nome(least: float, 
     assert [c[0] > 0 for c in constants] == [True, True, True, True, False, True]
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(small, sides)
 def test_nome(least: float, near_one: bool) -> None:
     pairs, m, m1 = given_moduli(least, near_one)

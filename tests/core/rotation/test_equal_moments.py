@@ -21,6 +21,7 @@ from core.rotation.precession.precession import precession
 from core.rotation.stability.stability import stability
 from core.rotation.surfaces.polhodes import polhode, separatrix
 from core.rotation.torque_free import TorqueFree
+from tests.drawn import draws
 
 ULP = 2.0**-52
 ulps = st.sampled_from((0, 1, 2, 7, 40))
@@ -31,7 +32,7 @@ def codes(notices) -> set[str]:
     return {notice.code for notice in notices}
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(ulps, ulps, st.booleans(), spin)
 def test_no_answer_contradicts_another(first, second, wide, start):
     moments = (1.0, 1.0 + first * ULP, 1.7 if wide else 1.0 + (first + second) * ULP)

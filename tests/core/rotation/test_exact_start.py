@@ -9,6 +9,7 @@ from core.balls import precision
 from core.bodies.exact import rotated, rotation
 from core.bodies.exact_inertia import ExactInertia
 from core.rotation.exact_start import ExactStart
+from tests.drawn import draws
 
 OBLIQUE = [[2, 1, 1], [1, 3, "0.5"], [1, "0.5", 4]]
 
@@ -50,7 +51,7 @@ def test_regime_and_circled_axis_are_decided_exactly(moments, rates, regime, sid
         assert found.side == side
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.tuples(*[st.integers(-9, 9)] * 3))
 def test_principal_axes_diagonalise(rates):
     inertia = ExactInertia.of_tensor(OBLIQUE)

@@ -18,6 +18,7 @@ from core.balls import precision
 from core.bodies.exact_inertia import ExactInertia
 from core.rotation.exact_start import ExactStart
 from core.rotation.turning_motion import TurningMotion, product
+from tests.drawn import draws
 from tests.oracles.free_rotation import precession_per_period, reference_angular_velocity
 from tests.oracles.polhode import Polhode, accelerates
 
@@ -39,7 +40,7 @@ def contains(ball: arb, want: Fraction | mpmath.mpf, width: int = 180) -> None:
     assert ball.rad() < (abs(text) + 1) * arb(2) ** -width
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate))
 def test_constants_are_those_of_the_exact_polhode(moments, rates) -> None:
     assume(len(set(moments)) == 3)

@@ -17,6 +17,7 @@ from core.errors import InvalidParameter
 from core.scenes import chain_motion
 from core.scenes.chain_on_wedge import ChainOnWedge
 from tests.core.scenes.oracles import chain_state, relative
+from tests.drawn import draws
 
 PLAIN = ChainOnWedge(masses=(1.0, 2.0), slopes=(0.5, 0.6), gravity=9.81, length=3.0, linear_density=0.7, position=1.0)
 
@@ -33,7 +34,7 @@ def arguments(scene: ChainOnWedge) -> tuple[object, ...]:
     )
 
 
-@settings(deadline=None, max_examples=80, derandomize=True)
+@settings(deadline=None, max_examples=draws(80), derandomize=True)
 @given(
     masses=st.tuples(st.floats(0, 5), st.floats(0, 5)),
     slopes=st.tuples(st.floats(0, math.pi / 2), st.floats(0, math.pi / 2)),
@@ -76,7 +77,7 @@ def test_samples_agree_with_the_hyperbola_in_many_digits(masses, slopes, density
         assert worst <= answer.accuracy.error * largest, "the stated error is never below the true one"
 
 
-@settings(deadline=None, max_examples=80, derandomize=True)
+@settings(deadline=None, max_examples=draws(80), derandomize=True)
 @given(
     masses=st.tuples(st.floats(0, 5), st.floats(0, 5)),
     slopes=st.tuples(st.floats(0.01, math.pi / 2), st.floats(0.01, math.pi / 2)),
@@ -228,7 +229,7 @@ def what_happens_at_once(scene: ChainOnWedge) -> str | None:
     return f"mass-{1 if way < 0 else 2}-at-apex" if leaves else None
 
 
-@settings(deadline=None, max_examples=300, derandomize=True)
+@settings(deadline=None, max_examples=draws(300), derandomize=True)
 @given(**CORNERS)
 def test_an_end_at_the_apex_leaves_at_once_or_not_at_all(masses, slopes, density, velocity, first) -> None:  # type: ignore[no-untyped-def]
     scene = corner(masses, slopes, density, velocity, first)
@@ -245,7 +246,7 @@ def test_an_end_at_the_apex_leaves_at_once_or_not_at_all(masses, slopes, density
         assert answer.trajectory["position"].tolist() == [scene.position] * 2
 
 
-@settings(deadline=None, max_examples=200, derandomize=True)
+@settings(deadline=None, max_examples=draws(200), derandomize=True)
 @given(**CORNERS)
 def test_an_end_at_the_apex_agrees_with_the_certified_answer(masses, slopes, density, velocity, first) -> None:  # type: ignore[no-untyped-def]
     scene = corner(masses, slopes, density, velocity, first)

@@ -27,6 +27,7 @@ from core.scenes.enclosure import (
     smaller,
     square_root,
 )
+from tests.drawn import draws
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)
 
@@ -59,7 +60,7 @@ def test_a_pair_of_doubles_has_106_bits(x: Fraction) -> None:
     assert abs(Fraction(high) + Fraction(low) - x) <= abs(x) * Fraction(2) ** -106
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(*3 * [st.floats(1e-3, 1e3)], st.floats(-math.pi, math.pi), st.floats(0.1, 9.0))
 def test_functions_of_balls(x: float, y: float, z: float, angle: float, size: float) -> None:
     with precision(BITS), mpmath.workdps(90):

@@ -14,6 +14,7 @@ from core.errors import InvalidParameter
 from core.scenes.friction import Friction
 from core.scenes.unwinding_shafts import UnwindingShafts
 from tests.core.scenes.oracles import time_stepped_shafts
+from tests.drawn import draws
 
 PLAIN = UnwindingShafts(masses=(2.0, 3.0), radii=(0.1, 0.2), slopes=(0.6, 0.9), gravity=9.81, positions=(500.0, 500.0))
 ROUGH = Friction(static=(0.6, 0.6), kinetic=(0.5, 0.5))
@@ -99,7 +100,7 @@ def test_agrees_with_time_stepping(slopes, velocities, rims, static, fraction) -
             assert np.max(np.abs(answer.trajectory["spins"][i] * [0.1, 0.2] - r[i])) < 0.02
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(deadline=None, max_examples=draws(60), derandomize=True)
 @given(
     velocities=st.tuples(st.floats(-3, 3), st.floats(-3, 3)),
     static=st.tuples(coefficient, coefficient),

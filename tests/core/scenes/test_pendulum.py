@@ -18,6 +18,7 @@ from core.errors import AccuracyUnreachable
 from core.scenes.enclosure import BITS, as_pair, exact
 from core.scenes.pendulum import Pendulum
 from tests.core.scenes.oracles import pendulum_angle
+from tests.drawn import draws
 
 U = 2.0**-53
 frequency = st.floats(0.2, 5.0)
@@ -58,7 +59,7 @@ def test_every_regime_against_taylor_series(w0, psi, spin, times) -> None:
             assert abs(side * c - mp.cos(want / 2)) <= 10 * U
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(frequency, angle, rate)
 def test_energy_along_the_samples(w0, psi, spin) -> None:
     with precision(BITS):
@@ -70,7 +71,7 @@ def test_energy_along_the_samples(w0, psi, spin) -> None:
     assert np.abs(s * s + (speed / (2 * w0)) ** 2 - m).max() <= 2 * 9 * U * (1 + m)
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(frequency, angle, rate)
 def test_the_period_brings_everything_back(w0, psi, spin) -> None:
     with precision(BITS), mp.workdps(40):

@@ -15,6 +15,7 @@ from core.balls import precision
 from core.scenes.enclosure import BITS, exact
 from core.scenes.quadratics import advanced, exit_time, real_roots
 from tests.core.scenes.oracles import relative
+from tests.drawn import draws
 
 
 @pytest.mark.parametrize(
@@ -63,7 +64,7 @@ def test_when_a_margin_is_left(value: float, rate: float, acceleration: float, t
 root = st.fractions(-1000, 1000, max_denominator=10**6)
 
 
-@settings(deadline=None, derandomize=True, max_examples=80)
+@settings(deadline=None, derandomize=True, max_examples=draws(80))
 @given(root, root, st.fractions(Fraction(1, 10**6), 10**6), st.sampled_from([-1, 1]))
 def test_rational_roots_are_enclosed(first: Fraction, second: Fraction, lead: Fraction, sign: int) -> None:
     """a (x - p)(x - q), whose roots are known without a formula."""
@@ -79,7 +80,7 @@ def test_rational_roots_are_enclosed(first: Fraction, second: Fraction, lead: Fr
             assert any(x.overlaps(exact(want)) and x.rad() < arb(2) ** -200 for x in found)
 
 
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 @given(*3 * [st.fractions(-50, 50, max_denominator=100)])
 def test_a_margin_is_left_where_it_first_turns_negative(value: Fraction, rate: Fraction, bend: Fraction) -> None:
     """By the sign of the margin in rational arithmetic, shortly before and after the stated time."""

@@ -15,6 +15,7 @@ from core.errors import AccuracyUnreachable, InvalidParameter
 from core.scenes import rod_motion
 from core.scenes.rod_in_hole import RodInHole
 from tests.core.scenes.oracles import pendulum_angle, relative, rod_with_multipliers
+from tests.drawn import draws
 
 UNIT = RodInHole(hole_radius=1.0, length=1.0, mass=1.0, gravity=9.81)
 TWELFTH = mp.mpf(1 / 12)
@@ -71,7 +72,7 @@ lengths = st.one_of(
 factors = st.one_of(st.sampled_from([0.0, 1 / 12, 1e-300, 1e300, 0.25]), st.floats(0, 1))
 
 
-@settings(deadline=None, max_examples=50, derandomize=True)
+@settings(deadline=None, max_examples=draws(50), derandomize=True)
 @given(
     length=lengths,
     factor=factors,

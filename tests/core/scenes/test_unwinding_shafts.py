@@ -15,6 +15,7 @@ from core.errors import InvalidParameter, NotApplicable
 from core.scenes import friction, string_samples
 from core.scenes.unwinding_shafts import UnwindingShafts
 from tests.core.scenes.oracles import bounce_by_bounce, lagrange_shafts, relative
+from tests.drawn import draws
 
 PLAIN = UnwindingShafts(
     masses=(2.0, 3.0),
@@ -40,7 +41,7 @@ slope = st.one_of(st.sampled_from([1e-9, VERTICAL]), st.floats(1e-3, VERTICAL))
 factor = st.one_of(st.sampled_from([0.5, 1.0, 0.4, 1e300, 1e-300]), st.floats(1e-6, 1e6))
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(deadline=None, max_examples=draws(60), derandomize=True)
 @given(
     masses=st.tuples(magnitude, magnitude),
     radii=st.tuples(magnitude, magnitude),
@@ -132,7 +133,7 @@ def test_level_faces_leave_everything_at_rest() -> None:
     assert answer.figures["phases"][0]["end"] is None
 
 
-@settings(deadline=None, max_examples=40, derandomize=True)
+@settings(deadline=None, max_examples=draws(40), derandomize=True)
 @given(
     masses=st.tuples(st.floats(0.1, 10), st.floats(0.1, 10)),
     slopes=st.tuples(st.floats(0, VERTICAL), st.floats(0, VERTICAL)),

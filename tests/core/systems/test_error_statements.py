@@ -33,6 +33,7 @@ from tests.core.systems.systems import (
     rigid_body,
     rigid_body_with_solution,
 )
+from tests.drawn import draws
 
 TIMES = np.array([0.0, 1.0, 2.0])
 
@@ -193,7 +194,7 @@ def test_a_norm_beyond_the_doubles_is_infinite_and_errors_are_relative_to_the_la
     assert 0.5 <= found.largest <= 0.5 * 2**0.5 * 1.5e308 / np.finfo(float).max * (1 + 1e-15)
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(
     st.tuples(*3 * [st.floats(0.3, 3.0)]),
     st.tuples(*3 * [st.floats(-2.0, 2.0)]).filter(lambda w: max(map(abs, w)) > 0.1),

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from core.systems.rounding import Digits, rounded, shortened, to_places, to_significant
 from core.systems.trajectory import Accuracy, Column, Trajectory, Work
+from tests.drawn import draws
 from tests.service.conftest import client_of, inline_service
 
 SERVICE = inline_service()
@@ -33,7 +34,7 @@ def digits_of(value: float) -> int:
     return len("".join(map(str, digits)).strip("0")) or 1
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(st.lists(finite, min_size=1, max_size=8), st.integers(1, 17))
 def test_significant_digits_are_those_of_decimal_rounding(values: list[float], digits: int) -> None:
     out = to_significant(np.array(values), digits) if digits < 17 else rounded(np.array(values), 17, 0.0)[0]
@@ -47,7 +48,7 @@ def test_significant_digits_are_those_of_decimal_rounding(values: list[float], d
             assert abs(Decimal(found) - Decimal(value)) <= unit / 2 + Decimal(math.ulp(value))
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(
     st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=12),
     st.integers(-280, 280),

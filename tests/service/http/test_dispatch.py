@@ -23,6 +23,7 @@ from service.http.deprecation import Deprecation
 from service.openapi import document
 from service.responses.json_rows import CHUNK
 from service.settings import Settings
+from tests.drawn import draws
 from tests.service import hostile
 from tests.service.conftest import INLINE, TOYS, client_of, inline_toys, toy_service
 from tests.service.toy_routes import GOOD
@@ -395,7 +396,7 @@ async def test_a_client_that_leaves_while_it_sends_is_let_go(service: Service) -
     st.lists(st.integers(0, 400), max_size=6),
     st.binary(max_size=400),
 )
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 def test_any_bytes_in_any_parts_get_a_problem(cuts: list[int], body: bytes) -> None:
     messages: list[dict[str, Any]] = []
     edges = [0, *sorted(min(cut, len(body)) for cut in cuts), len(body)]

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from service.http.limits import Bodies, ClientGone, negotiated, require_readable
 from service.problems import Refusal
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
+from tests.drawn import draws
 from tests.service.conftest import PATIENCE
 
 OFFERED = ("application/json", "text/plain")
@@ -42,14 +43,14 @@ def depth(node: object) -> int:
 
 
 @given(documents, st.integers(1, 6), st.booleans())
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 def test_depth_is_that_of_the_document(document: object, limit: int, spaced: bool) -> None:
     body = json.dumps(document, indent=1 if spaced else None).encode()
     assert (code(enforce_document_limits, body, Limits(nesting=limit)) == "too-complex") == (depth(document) > limit)
 
 
 @given(documents)
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 def test_a_document_without_repeated_keys_passes(document: object) -> None:
     require_distinct_keys(json.dumps(document).encode())
 

@@ -18,6 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.observability.logs import LOG, JsonLines, configure
+from tests.drawn import draws
 from tests.service.conftest import PATIENCE
 
 ROOT = Path(__file__).parents[3]
@@ -106,7 +107,7 @@ ANYTHING = st.recursive(
 
 
 @given(st.text(st.characters()), ANYTHING)
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 def test_whatever_is_logged_there_is_a_line(message: str, extra: Any) -> None:
     """Texts that are no Unicode, numbers of any size, things of any kind: a line that is lost tells nothing."""
     found = read(LINES.format(record(message.replace("%", "%%"), thing=extra)))

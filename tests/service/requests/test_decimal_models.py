@@ -35,6 +35,7 @@ from service.requests.decimal_models import (
     instants,
 )
 from service.routes import questions
+from tests.drawn import draws
 
 NUMERAL: TypeAdapter[Any] = TypeAdapter(DecimalTime)
 TIMES: TypeAdapter[Any] = TypeAdapter(DecimalTimes)
@@ -74,7 +75,7 @@ class TestNumeral:
     @example("1e")
     @example(".")
     @example("")
-    @settings(deadline=None, derandomize=True, max_examples=500)
+    @settings(deadline=None, derandomize=True, max_examples=draws(500))
     def test_strings_are_read_as_decimals_are_and_no_others(self, text: str) -> None:
         """Without what only the decimal module takes: spaces, underscores, digits of other scripts, long exponents."""
         exponent = text.lower().partition("e")[2].lstrip("+-")
@@ -258,7 +259,7 @@ EDGE = st.integers(1, 10**6).map(lambda n: f"{n}e-3")
 
 class TestBodyOf:
     @given(st.tuples(EDGE, EDGE, EDGE), EDGE)
-    @settings(deadline=None, derandomize=True, max_examples=40)
+    @settings(deadline=None, derandomize=True, max_examples=draws(40))
     def test_a_cuboid_is_exactly_what_it_says(self, edges: tuple[str, str, str], mass: str) -> None:
         found = body_of(read({"kind": "cuboid", "edges": edges, "mass": mass}))
         a, b, c = (Fraction(Decimal(edge)) for edge in edges)

@@ -15,6 +15,7 @@ from service.responses import npz as archive
 from service.responses.json_rows import CHUNK, ONE_PIECE, NotFinite, array_size, written
 from service.responses.json_stream import ONE_TEXT, SLICE, Document, composed
 from service.routing import PostRoute
+from tests.drawn import draws
 from tests.service.toy_routes import TOY
 
 RNG = np.random.default_rng(20261121)
@@ -59,7 +60,7 @@ PARTS = st.lists(TEXTS | TEXTS.map(memoryview) | arrays(), min_size=1, max_size=
 
 class TestDocument:
     @given(PARTS)
-    @settings(deadline=None, derandomize=True, max_examples=40)
+    @settings(deadline=None, derandomize=True, max_examples=draws(40))
     def test_pieces_are_the_whole_for_any_mix_of_parts(self, parts: list[Any]) -> None:
         document = Document(sum(part.size for part in parts if isinstance(part, np.ndarray)), tuple(parts))
         pieces = list(document.pieces())

@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 from core.balls import precision
 from core.multibody.motion.attitudes import quaternion, quaternions
+from tests.drawn import draws
 
 components = st.floats(-1, 1)
 
 
-@settings(max_examples=200)
+@settings(max_examples=draws(200))
 @given(st.lists(components, min_size=4, max_size=4).filter(lambda q: sum(x * x for x in q) > 0.01))
 @example([0.0, 1.0, 0.0, 0.0])
 @example([0.0, 0.0, -1.0, 0.0])

@@ -14,6 +14,7 @@ from core.multibody.motion.kepler import Kepler
 from core.multibody.motion.modelling import modelled
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, read
+from tests.drawn import draws
 from tests.oracles.kepler import orbit
 
 
@@ -28,7 +29,7 @@ def figure(low: float, high: float):
     return st.integers(round(low * 1000), round(high * 1000)).map(lambda x: str(x / 1000))
 
 
-@settings(max_examples=60)
+@settings(max_examples=draws(60))
 @given(
     figure(0.2, 2), figure(-1, 1), figure(-2, 2), figure(0.05, 2), st.sampled_from(["1", "-1", "0.3"]), figure(-9, 9)
 )

@@ -11,6 +11,7 @@ from tests.core.multibody.relations.hard_scenes import hard_scenes
 from tests.core.multibody.relations.numbers import Json
 from tests.core.multibody.relations.relations import NAMES, RELATIONS, checked, checked_by_digits
 from tests.core.multibody.relations.sources import catalogue, random_scene, without_search
+from tests.drawn import draws
 
 SLOW = ("block whose string reaches its pulley", "two stones on humps with a string")
 """Scenes that take seconds: their motion ends where a search does not see it, or nothing moves what is searched."""
@@ -18,7 +19,7 @@ HARD = {name: without_search(scene) for name, scene in hard_scenes().items() if 
 CATALOGUE = {name: without_search(scene) for name, scene in catalogue().items()}
 SEARCHED = 4
 """Of so many random scenes one is searched for a speed too."""
-SEEDS = 150
+SEEDS = draws(150)
 KNOWN: dict[tuple[str, str], str] = {}
 """Scenes whose answers are known to differ by a relation, and what is wrong."""
 

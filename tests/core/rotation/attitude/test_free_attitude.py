@@ -10,6 +10,7 @@ from core.bodies.mass_properties import PrincipalInertia
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.rotation.attitude.free_attitude import FreeAttitude
 from core.rotation.free_rotation import FreeRotation
+from tests.drawn import draws
 from tests.oracles.cases import Case, cases
 from tests.oracles.free_rotation import precession_per_period, reference_attitude
 from tests.oracles.motion import product
@@ -79,7 +80,7 @@ spin = st.floats(-10, 10)
 
 
 @given(st.tuples(positive, positive, positive), st.tuples(spin, spin, spin), st.floats(-1e3, 1e3))
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 def test_angular_momentum_stands_still_in_space(moments, start, time):
     turning = attitude(moments, start)
     times = np.array([0.0, time])

@@ -10,6 +10,7 @@ from mpmath import mp, mpf
 
 from core.double_double import Pair
 from core.rotation.attitude.quaternions import IDENTITY, Quaternion, conjugate, fill_between, of_matrix, product, unit
+from tests.drawn import draws
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -56,7 +57,7 @@ def pair(x: mpf) -> Pair:
 
 
 @given(st.tuples(WIDE, WIDE, WIDE, WIDE).filter(any))
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 def test_unit_quaternions_of_any_length(values: tuple[float, ...]) -> None:
     with mp.workdps(50):
         q = [mpf(value) for value in values]
@@ -72,7 +73,7 @@ def test_unit_quaternions_at_the_ends_of_the_range(size: float) -> None:
 
 
 @given(UNITS, UNITS, UNITS)
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 def test_a_product_turns_by_one_and_then_the_other(p: Any, q: Any, v: Any) -> None:
     with mp.workdps(50):
         first, second = unit(given_by(q)), unit(given_by(p))
@@ -86,7 +87,7 @@ HALF_TURNS = [(0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0), 
 
 
 @given(UNITS | st.sampled_from(HALF_TURNS))
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 def test_the_quaternion_of_a_matrix_turns_as_it_does(values: tuple[float, ...]) -> None:
     with mp.workdps(50):
         turn = rotation(exact(unit(given_by(values))))
@@ -98,7 +99,7 @@ def test_the_quaternion_of_a_matrix_turns_as_it_does(values: tuple[float, ...]) 
 
 
 @given(UNITS, UNITS, UNITS)
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 def test_the_matrix_multiplies_from_both_sides(p: Any, q: Any, r: Any) -> None:
     with mp.workdps(50):
         before, between, after = (unit(given_by(values)) for values in (p, q, r))

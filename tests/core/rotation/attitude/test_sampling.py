@@ -20,6 +20,7 @@ from core.rotation.closed_form.constants_of_motion import constants_of_motion
 from core.rotation.closed_form.sampling import sample_components
 from core.rotation.precession.constants import CIRCULAR, HYPERBOLIC, LIMIT, PrecessionConstants, precession_constants
 from tests.core.rotation.closed_form.test_constants_of_motion import motion
+from tests.drawn import draws
 from tests.oracles.polhode import Polhode
 
 U = 2.0**-53
@@ -53,7 +54,7 @@ def pole(q) -> np.ndarray:
     return np.array([2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z])
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate), st.lists(time, min_size=1, max_size=5))
 def test_unit_quaternions_that_take_the_momentum_to_its_place(moments, rates, times) -> None:
     moments = sorted(moments)
@@ -149,7 +150,7 @@ def test_the_phase_at_the_start_is_that_of_the_first_sample(rates) -> None:
     assert np.angle(complex(q[0], q[3]) / complex(cosine, sine)) == pytest.approx(0.0, abs=8 * U)
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.floats(1e-3, 1e3), st.floats(-1e6, 1e6), st.tuples(*3 * [st.floats(-1.0, 1.0)]))
 def test_a_steady_spin(rate, t, axis) -> None:
     """exp(n theta/2), theta/2 = rate t quarter turns; `turn` is any matrix and is applied to it."""

@@ -25,6 +25,7 @@ from core.rotation.closed_form.circulation import (
     complement,
     decision,
 )
+from tests.drawn import draws
 from tests.oracles.polhode import Polhode, accelerates
 
 STATED = 2 * 80 * Fraction(2) ** -106
@@ -71,7 +72,7 @@ near = st.builds(
 """Two nearly equal moments, and no farther from the separatrix than doubles cancel."""
 
 
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 @given(states | near)
 def test_the_sign_that_decides_is_exact_or_left_open(state: State) -> None:
     assume(len(set(state.moments)) == 3)
@@ -90,7 +91,7 @@ def test_the_sign_that_decides_is_exact_or_left_open(state: State) -> None:
         assert abs(Fraction(found.cancellation) * abs(difference) - whole) <= Fraction(2) ** -52 * whole
 
 
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 @given(states | near)
 def test_amplitudes_rate_and_modulus_are_those_of_the_polhode(state: State) -> None:
     assume(len(set(state.moments)) == 3)
@@ -118,7 +119,7 @@ def exact_scaled(x: Fraction) -> Scaled:
     return scaled(h, float(x / unit - Fraction(h)), e)
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(states)
 def test_energy_and_momentum_are_the_same_at_both_ends_of_a_quarter(state: State) -> None:
     """Neither is formed by the code: at sn = 0 the state is (A_c, 0, A_d), at sn = 1 (0, A_b, k' A_d)."""

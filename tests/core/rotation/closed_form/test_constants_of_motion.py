@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from core.double_double import Scaled, scaled
 from core.rotation.closed_form.circulation import PERIODIC, REST, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
 from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion, constants_of_motion
+from tests.drawn import draws
 from tests.oracles.elliptic import Periodic
 from tests.oracles.polhode import Polhode, accelerates
 
@@ -50,7 +51,7 @@ def motion(moments, rates) -> ConstantsOfMotion:
     return constants_of_motion(np.array(moments), ZERO, np.array(rates), ZERO, True, difference(moments, rates))
 
 
-@settings(deadline=None, derandomize=True, max_examples=120)
+@settings(deadline=None, derandomize=True, max_examples=draws(120))
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate), decades, decades)
 def test_the_start_is_at_its_phase(moments, rates, heavy, fast) -> None:
     moments = sorted(heavy * x for x in moments)
@@ -94,7 +95,7 @@ def test_the_start_is_at_its_phase(moments, rates, heavy, fast) -> None:
         assert math.frexp(found.time_scale)[0] == 0.5
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.integers(1, 40), st.integers(1, 40), rate, st.sampled_from([-1.0, 1.0]), st.sampled_from([-1.0, 1.0]))
 def test_the_start_on_the_separatrix(p, q, middle, first, second) -> None:
     """A (B - A) w_A^2 = C (C - B) w_C^2 in whole numbers: moments 14, 21, 24 have 98 = 2 7^2 and 72 = 2 6^2."""
@@ -119,7 +120,7 @@ def test_the_start_on_the_separatrix(p, q, middle, first, second) -> None:
         assert abs(mpmath.mpf(found.rate) + mpmath.mpf(found.rate_tail) - rate_of_u) <= 80 * SQUARE * rate_of_u
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.integers(-280, -40), st.floats(0.3, 0.99), st.sampled_from([-1, 1]))
 def test_the_complement_has_no_cancellation_if_the_difference_is_given(e, wb, side) -> None:
     """m1 = (C - A) |D_B|/((I_b - I_d) Y): with D_B given, no cancellation is left."""

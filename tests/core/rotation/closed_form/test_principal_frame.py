@@ -21,6 +21,7 @@ from core.bodies.mass_properties import PrincipalInertia
 from core.bodies.principal_inertia import RESOLUTION
 from core.rotation.closed_form.principal_frame import PrincipalFrame, resolve
 from core.rotation.free_rotation import FreeRotation
+from tests.drawn import draws, sampled
 from tests.oracles.free_rotation import reference_angular_velocity
 
 SQUARE = Fraction(2) ** -106
@@ -52,7 +53,7 @@ def whole(high: float, low: float) -> Fraction:
     return Fraction(float(high)) + Fraction(float(low))
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(quaternion, st.tuples(component, component, component))
 def test_components_along_oblique_axes(q, vector) -> None:
     axes, tail = frame_of(q)
@@ -69,7 +70,7 @@ def test_components_along_oblique_axes(q, vector) -> None:
     assert out[:2].tolist() == [[1.0, 2.0, 3.0], [1e-17, 1e-17, 1e-17]]
 
 
-@pytest.mark.parametrize(("order", "signs"), SIGNED)
+@pytest.mark.parametrize(("order", "signs"), sampled(SIGNED, __name__))
 def test_along_body_axes_nothing_is_rounded_and_nothing_is_taken_as_noise(order, signs) -> None:
     axes = np.zeros((3, 3))
     for k, (row, sign) in enumerate(zip(order, signs, strict=True)):

@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 from core.double_double import Scaled
 from core.rotation.closed_form.constants_of_motion import constants_of_motion
 from core.rotation.closed_form.sampling import largest_magnitude, quotient, sample_components, turn_into_body
+from tests.drawn import draws
 
 U = Fraction(2) ** -53
 ZERO = np.zeros(3)
 size = st.floats(1e-100, 1e100)
 
 
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(deadline=None, derandomize=True, max_examples=draws(500))
 @given(size | st.floats(0.5, 1.0), size | st.floats(0.5, 1.0))
 def test_a_quotient_by_a_reciprocal_is_as_good_as_a_division(above: float, below: float) -> None:
     over = 1.0 / below
@@ -36,7 +37,7 @@ def test_a_reciprocal_that_lost_its_last_place_is_made_good() -> None:
     assert quotient(49.0, over, float(1 - Fraction(over) * 49)) == 1.0
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(
     st.lists(st.floats(-1.0, 1.0), min_size=9, max_size=9), st.lists(st.tuples(*3 * [st.floats(-1.0, 1.0)]), max_size=9)
 )
@@ -51,7 +52,7 @@ def test_turning_into_the_body_rounds_three_times(entries, vectors) -> None:
             assert abs(Fraction(float(out[j, n])) - sum(terms)) <= bound
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), max_size=30))
 def test_largest_magnitude(times) -> None:
     assert largest_magnitude(np.array(times, dtype=float)) == max(map(abs, times), default=0.0)

@@ -32,6 +32,7 @@ from core.rotation.precession.constants import (
 )
 from tests.core.elliptic.parameters import moduli
 from tests.core.rotation.closed_form.test_constants_of_motion import motion
+from tests.drawn import draws
 from tests.oracles.free_rotation import precession_per_period
 from tests.oracles.polhode import Polhode, accelerates
 
@@ -58,7 +59,7 @@ def exact(x: Scaled) -> mpmath.mpf:
 ANGLE = st.just(0.0) | st.floats(1e-290, 0.78)
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(ANGLE | st.floats(-250, 0).map(lambda e: 0.7 * 10.0**e), st.floats(-0.5, 0.5))
 def test_sine_and_cosine_of_pairs(a, part) -> None:
     tail = part * np.spacing(a)
@@ -70,7 +71,7 @@ def test_sine_and_cosine_of_pairs(a, part) -> None:
             assert abs(got - want) <= 16 * SQUARE * want
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(ANGLE, st.floats(0.0, 0.0433))
 def test_slope_of_the_second_theta_function(a, q) -> None:
     assume(q == 0.0 or q > 1e-30)
@@ -84,7 +85,7 @@ def test_slope_of_the_second_theta_function(a, q) -> None:
         assert abs(got - above / below) <= 60 * SQUARE * abs(above / below)
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.floats(0.0, 0.99), st.floats(1e-6, 0.0433))
 def test_slope_of_the_fourth_theta_function(part, q) -> None:
     """Arguments between 0 and pi K'/2K, where q e^(2 xi) is 1: the poles lie there."""
@@ -123,7 +124,7 @@ def fractions(moments, rates) -> tuple[list[Fraction], list[Fraction]]:
     return [Fraction(x) for x in moments], [Fraction(x) for x in rates]
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate))
 def test_turning_at_the_end_of_a_quarter(moments, rates) -> None:
     i, w = fractions(sorted(moments), rates)
@@ -147,7 +148,7 @@ def test_turning_at_the_end_of_a_quarter(moments, rates) -> None:
         assert abs(number(t.kappa, t.kappa_tail) - want) <= few * want
 
 
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(deadline=None, derandomize=True, max_examples=draws(40))
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate))
 def test_a_quarter_turn_is_the_integral_of_the_rate(moments, rates) -> None:
     i, w = fractions(sorted(moments), rates)
@@ -182,7 +183,7 @@ def pair(x: mpmath.mpf) -> tuple[float, float]:
     return high, float(x - high)
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate))
 def test_whole_periods_are_integrals_of_the_third_kind(moments, rates) -> None:
     moments = sorted(moments)

@@ -9,6 +9,7 @@ from mpmath import mp, mpf
 
 from core.bodies.mass_properties import diagonal
 from core.rotation.precession.precession import precession
+from tests.drawn import draws
 from tests.oracles.free_rotation import period, precession_per_period
 
 ULP = 2.0**-52
@@ -23,7 +24,7 @@ decade = st.integers(-140, 140).map(lambda n: 10.0**n)
 slant = st.floats(-3.0, 3.0).map(lambda x: math.copysign(10.0 ** -abs(x), x))
 
 
-@settings(deadline=None, max_examples=150, derandomize=True)
+@settings(deadline=None, max_examples=draws(150), derandomize=True)
 @given(st.tuples(size, size, size, decade), st.tuples(slant, slant, slant, decade))
 def test_figures_of_three_moments_are_the_nearest_doubles(moments, start):
     """At any magnitude; half a unit in the last place, and a thousandth of it for the oracle and the margin."""
@@ -42,7 +43,7 @@ def test_figures_of_three_moments_are_the_nearest_doubles(moments, start):
             assert abs(got - want) <= 0.5005 * math.ulp(got)
 
 
-@settings(deadline=None, max_examples=150, derandomize=True)
+@settings(deadline=None, max_examples=draws(150), derandomize=True)
 @given(st.tuples(size, size, decade), st.tuples(slant, slant, slant, decade), st.integers(0, 2))
 def test_rates_of_symmetric_bodies_are_the_nearest_doubles(moments, start, axis):
     equal, single = (moments[2] * x for x in moments[:2])
@@ -130,7 +131,7 @@ def test_a_period_too_short_for_a_double_is_not_called_zero():
 units = st.integers(-40, 40)
 
 
-@settings(deadline=None, max_examples=300, derandomize=True)
+@settings(deadline=None, max_examples=draws(300), derandomize=True)
 @given(
     st.floats(1.0, 1.9), st.tuples(units, units, st.integers(-15, 15)), st.booleans(), st.tuples(slant, slant, slant)
 )

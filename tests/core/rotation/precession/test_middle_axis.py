@@ -18,6 +18,7 @@ from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.rotation.precession.precession import Precession, precession
 from core.rotation.torque_free import TorqueFree
+from tests.drawn import draws
 
 ANGLE = 4 * 2.0**-52
 """Of an angle in doubles, relative: one unit of the arctangent, a rounding, and the same of the difference from pi."""
@@ -69,7 +70,7 @@ def answer(moments: list[float], spin: list[float]) -> Precession:
     return precession(PrincipalMoments(tuple(moments)).mass_properties(), tuple(spin))  # type: ignore[arg-type]
 
 
-@settings(deadline=None, max_examples=300, derandomize=True)
+@settings(deadline=None, max_examples=draws(300), derandomize=True)
 @given(moments=MOMENTS, spin=st.lists(COMPONENTS, min_size=3, max_size=3))
 def test_the_range_is_that_of_the_linear_programme(moments: list[float], spin: list[float]) -> None:
     found = answer(moments, spin)
@@ -102,7 +103,7 @@ def test_the_range_is_that_of_the_linear_programme(moments: list[float], spin: l
     assert (tilt.range, tilt.tumbles) == (found.middle_axis_tilt, found.tumbles)
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(deadline=None, max_examples=draws(60), derandomize=True)
 @given(
     moments=st.permutations([1.0, 2.0, 3.0]),
     spin=st.lists(st.sampled_from([-2.0, -0.5, 0.0, 0.25, 1.0, 3.0]), min_size=3, max_size=3),

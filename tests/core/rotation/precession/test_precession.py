@@ -16,6 +16,7 @@ from core.bodies.mass_properties import MassProperties, diagonal
 from core.bodies.solids import Cylinder, Disc
 from core.errors import InvalidParameter
 from core.rotation.precession.precession import FIGURES, precession
+from tests.drawn import draws
 from tests.oracles.cases import T_HANDLE, T_HANDLE_ORIGIN
 from tests.oracles.free_rotation import flip_interval, free_motion, period, precession_per_period
 
@@ -85,7 +86,7 @@ def test_the_t_handle_about_its_centre_of_mass_and_not_about_the_origin():
 rates = st.floats(-100.0, 100.0).filter(lambda x: abs(x) > 1e-3)
 
 
-@settings(deadline=None, max_examples=80, derandomize=True)
+@settings(deadline=None, max_examples=draws(80), derandomize=True)
 @given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), st.tuples(rates, rates, rates), st.integers(0, 2))
 def test_symmetric_bodies_are_eulers_to_two_ulps(equal, single, start, axis):
     assume(abs(equal - single) > 1e-3)

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from core.rotation.precession.figures import OUT_OF_RANGE
 from core.rotation.stability.linearised import linear_rates
+from tests.drawn import draws
 
 size = st.floats(-150, 150).map(lambda e: 10.0**e) | st.floats(0.5, 2.0)
 part = st.floats(-0.5, 0.5)
@@ -41,7 +42,7 @@ def is_nearest(found: float, square: Fraction) -> bool:
     return low * low <= square <= high * high
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @given(st.tuples(size, size, size), part, rates)
 def test_rates_are_the_nearest_doubles(moments, share, rate) -> None:
     i = np.array(sorted(moments))
@@ -62,7 +63,7 @@ def test_rates_are_the_nearest_doubles(moments, share, rate) -> None:
             assert is_nearest(found.size, square)
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(st.tuples(size, size), part, rates, st.booleans())
 def test_two_equal_moments_have_a_jordan_block_whose_entry_is_the_drift(moments, share, rate, lower) -> None:
     low, high = sorted(moments)

@@ -19,6 +19,7 @@ from core.errors import InvalidParameter, NotApplicable
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.precession import precession
 from core.rotation.stability.stability import stability
+from tests.drawn import draws
 from tests.oracles.cases import T_HANDLE
 from tests.oracles.free_rotation import flip_interval
 
@@ -38,7 +39,7 @@ def jacobian(moments, axis: int, rate: float) -> mpmath.matrix:
     return matrix
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(deadline=None, max_examples=draws(60), derandomize=True)
 @given(st.tuples(moment, moment, moment).filter(lambda i: len(set(i)) == 3), st.floats(1e-3, 1e3))
 def test_eigenvalues_are_those_of_the_linearised_equation(moments, rate):
     found = stability(diagonal(moments), rate)

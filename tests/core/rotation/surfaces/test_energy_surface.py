@@ -14,6 +14,7 @@ from core.bodies.mass_properties import MassProperties, diagonal
 from core.bodies.principal_inertia import ZEROS
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
+from tests.drawn import draws
 
 positive = st.floats(1e-3, 1e3)
 
@@ -23,7 +24,7 @@ def energy_of(moments, w) -> Fraction:
 
 
 @given(st.tuples(positive, positive, positive), positive)
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 def test_every_vertex_is_on_the_surface(moments, energy):
     surface = EnergyEllipsoid.of(diagonal(moments), energy)
     x, y, z = surface.grid(7)

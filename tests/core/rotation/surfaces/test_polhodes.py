@@ -11,6 +11,7 @@ from core.bodies.mass_properties import diagonal
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.surfaces.polhodes import polhode, separatrix
+from tests.drawn import draws, sampled
 from tests.oracles.cases import cases
 
 positive = st.floats(1e-2, 1e2)
@@ -31,7 +32,7 @@ def worst(moments, start, points) -> float:
 
 
 @given(st.tuples(positive, positive, positive), st.tuples(spin, spin, spin))
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 def test_every_point_is_on_both_surfaces(moments, start):
     if not any(start):
         return
@@ -39,7 +40,9 @@ def test_every_point_is_on_both_surfaces(moments, start):
     assert worst(moments, start, curve.points) < 1e-14
 
 
-@pytest.mark.parametrize("case", [c for c in cases() if any(c.angular_velocity)], ids=lambda case: case.name)
+@pytest.mark.parametrize(
+    "case", [c for c in sampled(cases(), __name__) if any(c.angular_velocity)], ids=lambda case: case.name
+)
 def test_in_every_regime(case):
     curve = polhode(diagonal(case.moments), np.array(case.angular_velocity), 16)
     assert worst(case.moments, case.angular_velocity, curve.points) < 1e-14

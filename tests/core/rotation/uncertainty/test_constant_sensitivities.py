@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from core.rotation.uncertainty import constant_sensitivities as at
 from core.rotation.uncertainty.constant_sensitivities import COUNT, add_constants, add_start, slope_of_quarter
+from tests.drawn import draws
 
 U = 2.0**-53
 STEP = mpmath.mpf(10) ** -20
@@ -70,7 +71,7 @@ def derivative(of: Callable[[Constants], object], i, w, dI, dw, d):
     return (above - below) / (2 * STEP)
 
 
-@settings(deadline=None, derandomize=True, max_examples=80)
+@settings(deadline=None, derandomize=True, max_examples=draws(80))
 @given(cases)
 def test_every_constant_moves_by_its_derivative(case) -> None:
     least, low, high, rates, inputs = case
@@ -118,7 +119,7 @@ def test_every_constant_moves_by_its_derivative(case) -> None:
         assert abs(sums[at.FREQUENCY] - named[at.FREQUENCY]) <= len(inputs) * few + 1e-7 * named[at.MODULUS]
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(
     st.tuples(gap, gap, gap),
     st.tuples(spin, spin, spin),
@@ -156,7 +157,7 @@ def test_what_holds_of_every_motion(moments, rates, dI, dw, turned, axis, third)
     assert sums[at.CROSSWISE] == pytest.approx(2 * across, abs=16 * U)
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(st.floats(-12, -0.302).map(lambda e: 10.0**e), st.booleans())
 def test_slope_of_the_quarter_period(least, near_one) -> None:
     with mpmath.workdps(60):

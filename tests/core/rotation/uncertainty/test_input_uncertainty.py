@@ -22,6 +22,7 @@ from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
 from core.rotation.uncertainty.sensitivities import growth_factor
 from core.systems.solve import solve
+from tests.drawn import draws
 from tests.oracles.cases import T_HANDLE
 from tests.oracles.perturbed import ATTITUDE, Perturbed
 from tests.oracles.uncertain_bodies import KINDS, REGIMES, Uncertain, of_moments, of_points, uncertain
@@ -192,7 +193,7 @@ def test_at_the_ends_of_the_double_range_it_is_a_number(
 component = st.floats(-1.0, 1.0).map(lambda x: x if abs(x) > 1e-30 else 0.0)
 
 
-@settings(deadline=None, derandomize=True, max_examples=150)
+@settings(deadline=None, derandomize=True, max_examples=draws(150))
 @drawn(
     st.floats(0.3, 3.0),
     st.sampled_from((1e-15, 1e-9, 1e-4, 0.1, 1.0)),
@@ -222,7 +223,7 @@ def test_no_difference_of_two_motions_grows_faster_than_groenwall_allows(first, 
 SIZES = st.floats(-2.0, 1.0).map(lambda x: 10.0**x)
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @drawn(
     st.tuples(SIZES, SIZES, SIZES),
     st.tuples(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0)).filter(lambda w: math.hypot(*w) > 0.1),
@@ -259,7 +260,7 @@ MOMENT = st.floats(-6.0, 0.0).map(lambda x: 10.0**x) | st.sampled_from([1.0, 1.0
 RATE = st.just(0.0) | st.floats(-4.0, 0.0).map(lambda x: 10.0**x) | st.floats(-4.0, 0.0).map(lambda x: -(10.0**x))
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=draws(300))
 @drawn(
     st.tuples(MOMENT, MOMENT, MOMENT),
     st.tuples(RATE, RATE, RATE).filter(any),

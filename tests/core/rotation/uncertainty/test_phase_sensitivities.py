@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.rotation.uncertainty.phase_sensitivities import BETWEEN, STEPS, largest_until, phase_errors
+from tests.drawn import draws
 
 STEP = mpmath.mpf(10) ** -15
 
@@ -42,7 +43,7 @@ class Family:
         return mpmath.norm([(a - b) / (2 * STEP) for a, b in zip(above, below, strict=True)])
 
 
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(deadline=None, derandomize=True, max_examples=draws(40))
 @given(st.tuples(amplitude, amplitude, amplitude), parameter, start, rows, st.integers(0, 2 * STEPS + 1))
 def test_error_at_a_phase_is_the_derivative_of_the_motion(amplitudes, m, phase, row, place) -> None:
     with mpmath.workdps(40):
@@ -62,7 +63,7 @@ def test_error_at_a_phase_is_the_derivative_of_the_motion(amplitudes, m, phase, 
         assert abs(out[place, 2] - slope) <= 1e-12
 
 
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(deadline=None, derandomize=True, max_examples=draws(40))
 @given(st.tuples(amplitude, amplitude, amplitude), parameter, start, rows, st.floats(-1.0, 1.0), st.floats(0.1, 12.0))
 def test_the_largest_covers_every_phase_that_is_reached(amplitudes, m, phase, row, part, angle) -> None:
     with mpmath.workdps(40):

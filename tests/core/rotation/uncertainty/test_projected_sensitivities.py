@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from core.bodies.exact import rotation
 from core.rotation.uncertainty.projected_sensitivities import given_moment_sensitivities, projected_sensitivities
+from tests.drawn import draws
 
 U = 2.0**-53
 STEP = mpmath.mpf(10) ** -20
@@ -34,7 +35,7 @@ def along(axes: mpmath.matrix, moments, change: mpmath.matrix, velocity) -> tupl
     return list(values), [sum(vectors[n, k] * velocity[n] for n in range(3)) for k in range(3)], vectors
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(quaternion, gap, gap, st.tuples(entry, entry, entry), st.tuples(*6 * [entry]))
 def test_perturbation_of_first_order(q, low, high, velocity, entries) -> None:
     exact = rotation([Fraction(x) for x in q])

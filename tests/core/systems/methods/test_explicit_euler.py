@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from core.systems.methods import ExplicitEuler
 from tests.core.systems.systems import rigid_body
+from tests.drawn import draws
 
 
 def test_first_return_of_the_source_document() -> None:
@@ -32,7 +33,7 @@ def test_every_sample_is_one_step_of_the_recurrence_to_the_last_bit() -> None:
         w = row
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=draws(50))
 @given(
     # Moments so near each other that no motion runs away from Euler within its forty steps.
     st.tuples(*[st.floats(0.5, 2)] * 3),
@@ -51,7 +52,7 @@ def test_energy_and_momentum_grow_at_every_step_by_exactly_what_theory_says(mome
     assert np.diff(momentum) == pytest.approx(h * h * (torque**2).sum(axis=1)[:-1], abs=1e-14 * momentum.max())
 
 
-@settings(deadline=None, derandomize=True, max_examples=50)
+@settings(deadline=None, derandomize=True, max_examples=draws(50))
 @given(st.tuples(*[st.floats(0.5, 2)] * 3), st.tuples(*[st.floats(-3, 3)] * 3), st.floats(1e-3, 1e-2), st.floats(0, 1))
 def test_between_grid_points_it_is_the_straight_line(moments, rates, h, share) -> None:
     for way in (h, -h):

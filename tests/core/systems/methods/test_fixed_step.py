@@ -23,6 +23,7 @@ from core.systems.methods import (
 from core.systems.methods.fixed_step import lay_out
 from core.systems.system import Structure
 from tests.core.systems.systems import bell, explosion, oscillator, rigid_body
+from tests.drawn import draws
 
 FIXED = [ExplicitEuler, RungeKutta4, ImplicitMidpoint, SymmetricSplitting, DiscreteMoserVeselov]
 
@@ -50,7 +51,7 @@ def test_a_grid_of_rounded_decimals_counts_as_equally_spaced() -> None:
     assert (length[:, 0] == 0.1).all()
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=draws(200))
 @given(
     st.lists(st.floats(1e-6, 1e6), min_size=1, max_size=30, unique=True),
     st.floats(1e-2, 1e7),
@@ -77,7 +78,7 @@ def test_rounding_of_the_grid_does_not_add_up_over_many_steps() -> None:
     assert begin[0, 1] + length[0, 1] == 0.1 * 10**12 + 0.05
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(
     st.sampled_from(FIXED),
     st.sampled_from([rigid_body((1.0, 2.0, 2.5), (0.4, 1.0, -0.7)), oscillator(rate=0.7)]),
@@ -107,7 +108,7 @@ def test_a_sample_between_grid_points_is_one_step_of_the_method_from_the_point_b
             assert np.abs(sample - own).max() <= 4 * 2.0**-53
 
 
-@settings(deadline=None, derandomize=True, max_examples=100)
+@settings(deadline=None, derandomize=True, max_examples=draws(100))
 @given(st.sampled_from([ExplicitEuler, RungeKutta4, ImplicitMidpoint]), st.floats(0.01, 1.0), st.floats(-0.6, 0.6))
 def test_the_finer_run_is_finer_within_the_first_step_too(method, step, share) -> None:
     """There both runs would be the same single step, and show no error, if the finer one only had the finer grid."""

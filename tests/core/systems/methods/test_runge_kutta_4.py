@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from core.systems.methods import RungeKutta4
 from tests.core.systems.systems import bell, oscillator, rigid_body
+from tests.drawn import draws
 
 U = 2.0**-53
 HALF = Fraction(1, 2)
@@ -35,7 +36,7 @@ def euler(moments):
     return field
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.tuples(*3 * [st.floats(0.5, 4.0)]), st.tuples(*3 * [st.floats(-2.0, 2.0)]), st.floats(1e-3, 0.25))
 def test_a_step_of_euler_s_equations(moments, rates, h) -> None:
     exact = [Fraction(x) for x in moments]
@@ -46,7 +47,7 @@ def test_a_step_of_euler_s_equations(moments, rates, h) -> None:
         assert abs(Fraction(float(g)) - w) <= Fraction(U) * (abs(w) + Fraction(h) * 28 * 12)
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.floats(0.01, 1.0), st.integers(1, 20))
 def test_an_oscillator_is_multiplied_by_the_taylor_polynomial_of_degree_four(h, n) -> None:
     """(1 + z + z^2/2 + z^3/6 + z^4/24)^n at z = i h."""
