@@ -3,6 +3,7 @@
 import http.client
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -261,6 +262,15 @@ def test_several_server_processes_give_the_same_bytes_and_shared_counters_and_st
     assert sum(line.get("operation") == "rotation_trajectory" and "status" in line for line in lines) == 30
 
 
+def until_taken(server: Server, count: int) -> None:
+    """Wait until so many questions are answered, wait for a compute process, or have used up their slice of one."""
+    pattern = r'^polhode_(?:waiting|long|request_seconds_count\{operation="rotation_trajectory",.*\}) (\S+)$'
+    until = time.monotonic() + PATIENCE
+    while sum(map(float, re.findall(pattern, text := server.get("/metrics").text, re.MULTILINE))) < count:
+        assert time.monotonic() < until, text
+        time.sleep(0.02)
+
+
 def server_processes(server: Server) -> list[int]:
     """Return the ids of the processes that the first has started to serve."""
     first = server.process.pid
@@ -305,7 +315,7 @@ def test_requests_are_logged_and_a_large_one_in_flight_is_finished_when_the_serv
     heavy = json.dumps(hostile.QUESTION | {"times": {"start": 0.0, "stop": 400.0, "count": 11}, "method": steps})
     with ThreadPoolExecutor(1) as threads:
         flying = threads.submit(post, server, heavy.encode())
-        time.sleep(0.1)
+        until_taken(server, 2)
         lines = stopped_cleanly(server, scratch, signal.SIGTERM)
         status, _, content = flying.result()
     assert status == 200
@@ -324,7 +334,7 @@ def test_what_cannot_be_finished_in_time_is_refused_when_the_server_is_stopped(
     # The first may be finished by then; more than a second of work is queued behind it.
     with ThreadPoolExecutor(12) as threads:
         flying = [threads.submit(post, server, heavy.encode()) for _ in range(12)]
-        time.sleep(0.1)
+        until_taken(server, 12)
         server.stop()
         answers = [one.result() for one in flying]
     refused = [
