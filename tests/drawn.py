@@ -11,8 +11,8 @@ from typing import TypeVar
 ALL = "THOROUGH" in os.environ
 SHARE = 4
 """One in so many is tested in each run."""
-FEWEST = 20
-"""Examples of a property that are always drawn."""
+FEWEST, SHORT = 20, 8
+"""Examples of a property, and entries of a list, that are always tested."""
 
 T = TypeVar("T")
 
@@ -27,5 +27,6 @@ def sampled(listed: Iterable[T], name: str) -> list[T]:
     entries = list(listed)
     if ALL:
         return entries
-    chosen = Random(name).sample(range(len(entries)), -(-len(entries) // SHARE))
+    count = min(len(entries), max(SHORT, len(entries) // SHARE))
+    chosen = Random(name).sample(range(len(entries)), count)
     return [entries[i] for i in sorted(chosen)]

@@ -18,7 +18,7 @@ from core.multibody.motion.series_pairs import entries_of_lines_pairs
 from tests.core.multibody.judge import numerical
 from tests.core.multibody.random_scenes import any_scene
 from tests.core.multibody.worked_examples import points
-from tests.drawn import sampled
+from tests.drawn import ALL
 
 
 def placed(description: dict) -> tuple[Packed, np.ndarray]:
@@ -57,7 +57,7 @@ def off(found: np.ndarray, right: fmpq_mat) -> float:
     return float(Fraction(int(ratio.p), int(ratio.q)))
 
 
-@pytest.mark.parametrize("seed", sampled([0, 1, 3, 5, 8, 16, 23, 30], __name__))
+@pytest.mark.parametrize("seed", [0, 1, 3, 5, 8, 16, 23, 30] if ALL else [3, 16])
 def test_inverses_are_right_to_doubles_and_to_pairs(seed: int) -> None:
     table, lines = placed(any_scene(seed))
     right = exact(table, lines)
