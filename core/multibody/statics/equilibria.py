@@ -73,8 +73,11 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
             "equilibria are not answered where rates are held that no measure gives: motors, rolling on curves, drums",
             path=("outputs",),
         )
+    resting = RestingPlaces(found, entered, small)
     if not table.names:
-        return ()
+        # What is held where it is rests there, if its strings can hold it.
+        held, only = RestEquations(table, [], {}, []), ExactPlace([], [])
+        return (_described(found, small, held, only),) if resting.possible(only) else ()
     gains, chosen = accelerations(table)
     units = units_of(table, gains)
     equations = StaticEquations(packed(table, chosen, units))
@@ -88,7 +91,6 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
     exact = RestEquations(table, chosen, ties, [arb(2) ** power for power in powers])
     start = state(table, units)[0][:, 0]
     places = solutions_of(equations, start, len(table.names) - len(chosen))
-    resting = RestingPlaces(found, entered, small)
     turns = {j for tie in ties.values() for key in tie.turn for j in key}
     found_places = [place for q, x in places for place in [exact.place(q, x)] if place is not None]
     # Of places that differ by whole turns alone that with the fewest is kept.

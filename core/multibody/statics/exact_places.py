@@ -145,7 +145,8 @@ class RestEquations:
         terms = sum(
             (max(map(abs, forces), key=float, default=ZERO) for forces in (self.table.load.values(), pulls)), ZERO
         )
-        left = max(abs(x).upper() for x in self.residuals([*place.q, *place.multipliers])[: self.count])
+        residuals = self.residuals([*place.q, *place.multipliers])[: self.count]
+        left = max((abs(x).upper() for x in residuals), default=ZERO)
         return float(left / terms) if terms > 0 else 0.0
 
     def lines(self, q: Sequence[Ball]) -> list[dict[int, Ball]]:

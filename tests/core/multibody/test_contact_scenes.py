@@ -63,7 +63,7 @@ def test_an_energy_that_should_be_zero_is_known_no_better_than_the_places() -> N
     assert judged(any_scene(3109)) == "horizon"
 
 
-@pytest.mark.parametrize("seed", [4068, 5739, 6301])
+@pytest.mark.parametrize("seed", [5739, 6301])
 def test_impacts_in_turn_are_told_apart_down_to_a_millionth(seed: int) -> None:
     """How many impacts come before two are closer than they are known depends on the units; those before do not."""
     scene = any_scene(seed)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -235,3 +236,26 @@ def test_searches_that_would_take_minutes_and_gigabytes_are_refused() -> None:
     scene = {"gravity": [0, -9.81], "bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(100)}}
     with pytest.raises(BudgetExceeded, match="4096 starts, 200 unknowns"):
         solve_scene(read(scene), outputs=("equilibria",))
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize(
+    "holds",
+    [
+        [{"kind": "rod", "a": "p", "b": [-1, 0]}, {"kind": "rod", "a": "p", "b": [1, 0]}],
+        [{"kind": "string", "through": ["p", [-1, 0]]}, {"kind": "string", "through": ["p", [1, 0]]}],
+        [{"kind": "string", "through": ["p", ["-1e3", 0]]}, {"kind": "string", "through": ["p", ["1e3", 0]]}],
+        [{"kind": "rod", "a": "p", "b": [-1, 0]}, {"kind": "track", "place": "p", "on": {"at": [0, -1]}}],
+    ],
+)
+def test_what_cannot_move_rests_where_it_is(holds: list[dict[str, Any]], beside: bool) -> None:
+    scene: dict[str, Any] = {"gravity": [0, -9.81], "bodies": {"p": {"mass": 2, "at": [0, -1]}}, "connections": holds}
+    if beside:
+        scene["bodies"] = scene["bodies"] | {"q": {"mass": 1, "at": [5, -1]}}
+        scene["connections"] = [*holds, {"kind": "rod", "a": "q", "b": [5, 0]}]
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert [(one.positions["p"], one.stable) for one in found] == [((0.0, -1.0), True), ((0.0, -1.0), False)][
+        : 1 + beside
+    ]
+    assert len(found[0].modes) == beside
