@@ -10,7 +10,7 @@ from core.formulas import names_of
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.expansion import Expansion, Series, expansion, leading_sign
 from core.multibody.laws.law import Law
-from core.multibody.laws.series import LawSeries
+from core.multibody.laws.series import LawSeries, values_at
 from core.multibody.table.law_pieces import Argument, Key, in_pieces, key_of
 from core.multibody.table.table import Table
 
@@ -67,13 +67,13 @@ def table_in_pieces(table: Table, q: Sequence[Ball], v: Sequence[Ball], moving: 
     ------
     NoPiece
         Where no piece does, or more than one: neither side of the zero is left, or the formula does not say which; and
-        for an argument without a value.
+        for an argument, or a piece, without a value.
     """
     kept: list[tuple[Mapping[Key, int], Expansion]] = []
     undecided, last = False, None
     for one in _candidates(table, q, v):
         if not one.tried:
-            return one
+            return _with_values(one, q, v)
         last, own = one, moving(one.table)
         if own is None:
             undecided = True
@@ -92,7 +92,20 @@ def table_in_pieces(table: Table, q: Sequence[Ball], v: Sequence[Ball], moving: 
         argument = last.arguments[next(iter(last.tried))].law
         raise NoPiece(argument, "lead away from the zero of what its pieces depend on, on one side alone")
     leads, along = kept[0]
-    return InPieces(*in_pieces(table, _signs(q, v, leads, along)), leads)
+    return _with_values(InPieces(*in_pieces(table, _signs(q, v, leads, along)), leads), q, v)
+
+
+def _with_values(found: InPieces, q: Sequence[Ball], v: Sequence[Ball]) -> InPieces:
+    """Return a table whose formulas have values at a state; it raises `NoPiece` for another, as beyond the last point.
+
+    Elsewhere a formula that has none is one that the motion approaches; a change of piece may lead into it at once.
+    """
+    for law in found.table.acting:
+        try:
+            values_at([law], q, v)
+        except InvalidParameter as fault:
+            raise NoPiece(law, fault.rule, without_value=True) from None
+    return found
 
 
 def _sign_along(law: Law, motion: Expansion) -> int:

@@ -107,7 +107,7 @@ class _Expanding:
     def _read(self, text: str) -> Node:
         known = [*self.numerals.let, *self.numerals.formulas, *self.names]
         try:
-            formula = Formula.read(text, known, MOTION_FUNCTIONS)
+            formula = Formula.read(text, known, (*MOTION_FUNCTIONS, *self.numerals.tables))
         except InvalidParameter as fault:
             raise InvalidParameter((*self.path, *fault.path), fault.rule, remedy=fault.remedy) from None
         return self._expanded(formula.root)
@@ -117,7 +117,9 @@ class _Expanding:
         if self.count > MOST_NODES:
             raise InvalidParameter(self.path, f"have at most {MOST_NODES} numbers, names and operations with its let")
         if node.kind != "name":
-            return Node(node.kind, node.text, tuple(self._expanded(inner) for inner in node.inner))
+            inner = tuple(self._expanded(inner) for inner in node.inner)
+            table = self.numerals.tables.get(node.kind)
+            return Node(node.kind, node.text, inner) if table is None else table.of(*inner)
         if node.text in self.numerals.formulas and node.text not in self.names:
             return self._read(self.numerals.formulas[node.text])
         place, _, column = node.text.rpartition(".")

@@ -19,6 +19,7 @@ from flint import arb, fmpq
 from core.errors import InvalidParameter, Path
 from core.formulas import FUNCTIONS, LARGEST_EXPONENT, NAMES_OF_FUNCTIONS, Arithmetic, Formula, is_name, names_in
 from core.multibody.algebra.polynomials import Ball, is_zero
+from core.multibody.language.tabulated import Tabulated, is_table, tabulated
 
 MOST_DIGITS = 200
 """Digits of a number: twice as many as the precision of the set-up distinguishes."""
@@ -75,6 +76,8 @@ class Numerals:
         Filled with all numbers by their paths, formulas too.
     formulas : dict of str to str
         Names in `let` that are formulas of the motion.
+    tables : dict of str to Tabulated
+        Names in `let` that are functions by points.
     """
 
     let: Mapping[str, Ball]
@@ -85,6 +88,7 @@ class Numerals:
     read: dict[Path, Ball] = field(default_factory=dict, repr=False)
     every: dict[Path, Ball] = field(default_factory=dict, repr=False)
     formulas: dict[str, str] = field(default_factory=dict, repr=False)
+    tables: dict[str, Tabulated] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -111,6 +115,9 @@ class Numerals:
         for name, number in let.items():
             if not is_name(name):
                 raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
+            if is_table(number):
+                found.tables[name] = tabulated(number, found.number, ("let", name))
+                continue
             if isinstance(number, str) and _is_of_motion(number, found, let):
                 found.formulas[name] = number
                 continue
@@ -197,7 +204,11 @@ def _is_of_motion(text: str, numerals: Numerals, let: Mapping[str, object]) -> b
     """Return whether a formula in `let` has names of the motion, or of others that have."""
     unknown = names_in(text) - {*numerals.let, *NAMES_OF_FUNCTIONS, "pi"}
     return bool(unknown) and all(
-        "." in name or (name in NAMES_OF_MOTION and name not in let) or name in numerals.formulas for name in unknown
+        "." in name
+        or (name in NAMES_OF_MOTION and name not in let)
+        or name in numerals.formulas
+        or name in numerals.tables
+        for name in unknown
     )
 
 

@@ -19,6 +19,7 @@ from core.multibody.language.connection import Connection
 from core.multibody.language.contacts import ImpactLaw, Simultaneous
 from core.multibody.language.numerals import LONGEST_NAME, NAME, member
 from core.multibody.language.switches import SWITCHING
+from core.multibody.language.tabulated import is_table
 from core.multibody.language.written import GROUND, Number, Vector
 from core.near_names import did_you_mean
 
@@ -47,7 +48,8 @@ class Scene:
     gravity : vector, optional
         Acceleration of free fall (m/s^2), of two or three components; it decides plane or space. None without one.
     let : mapping of str to number
-        Named numbers that formulas may use.
+        Named numbers that formulas may use, formulas of the motion, and functions by points: ``{points,
+        interpolation, outside}``.
     numbers : {"decimals", "doubles"}
         Whether 0.1 is the decimal or the double nearest to it.
     impacts : {"newton", "poisson", "stronge"}
@@ -105,7 +107,8 @@ class Scene:
     def switches(self) -> bool:
         """Whether a formula may have several pieces."""
         texts = [*self.let.values(), *(text for one in self.connections for text in one.formulas())]
-        return any(set(SWITCHING) & names_in(text) for text in texts if isinstance(text, str))
+        kinked = {*SWITCHING, *(name for name, value in self.let.items() if is_table(value))}
+        return any(kinked & names_in(text) for text in texts if isinstance(text, str))
 
     @property
     def continues(self) -> bool:
