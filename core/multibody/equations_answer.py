@@ -42,17 +42,20 @@ class ConservedQuantity:
 
 @dataclass(frozen=True)
 class LinearEquations:
-    """M x'' + D x' + K x = b of a part whose equations are linear.
+    """M x'' + D x' + K x = b of a part whose equations are linear, or of its small motions.
 
     Attributes
     ----------
     coordinates : tuple of str
-        x.
+        x, or of small motions the deviations of these.
+    about : mapping of str to float
+        Of small motions the place of rest; empty where the equations are linear.
     mass, damping, stiffness : tuple of tuple of float
     load : tuple of float
     """
 
     coordinates: tuple[str, ...]
+    about: Mapping[str, float]
     mass: tuple[tuple[float, ...], ...]
     damping: tuple[tuple[float, ...], ...]
     stiffness: tuple[tuple[float, ...], ...]
@@ -85,7 +88,7 @@ class SceneEquations:
         None where other forces act than those with a potential.
     conserved : tuple of ConservedQuantity
     linear : tuple of LinearEquations
-        Of the parts whose equations are linear.
+        Of the parts whose equations are linear, or that have a place of rest near the start.
     closed_form : mapping of str to WrittenFormula
         Coordinates as functions of the time, where these are elementary.
     """

@@ -32,9 +32,10 @@ class ConservedQuantity(WrittenEquation):
 
 
 class LinearPart(View):
-    """M x'' + D x' + K x = b of a part whose equations are linear, in SI units and radians."""
+    """M x'' + D x' + K x = b of a part whose equations are linear or of its small motions, in SI units and radians."""
 
-    coordinates: list[str] = Field(description="x.")
+    coordinates: list[str] = Field(description="x, or of small motions the deviations of these.")
+    about: dict[str, InSI] = Field(description="Of small motions the place of rest; empty for linear equations.")
     mass: list[list[InSI]] = Field(description="M.")
     damping: list[list[InSI]] = Field(description="D, with gyroscopic terms.")
     stiffness: list[list[InSI]] = Field(description="K.")
@@ -63,7 +64,9 @@ class SceneEquations(View):
     )
     lagrangian: WrittenEquation | None = Field(description="null unless its equations are these.")
     conserved: list[ConservedQuantity] = Field(description="As the equations show for every motion.")
-    linear: list[LinearPart] = Field(description="Matrices of the parts whose equations are linear.")
+    linear: list[LinearPart] = Field(
+        description="Matrices of the parts with linear equations, or with a place of rest that is found near the start."
+    )
     closed_form: dict[str, WrittenEquation] = Field(
         description="Coordinates as functions of t, where these are elementary."
     )

@@ -7,6 +7,7 @@ inverse; rates in constant proportion are integrated. What remains is held by mu
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
 from flint import arb
@@ -61,6 +62,8 @@ class Chart:
     rounds : list of Round
     steps : list of str
         Why the variables suffice, in sentences.
+    taken : collection of str
+        Names of the variables of other tables.
     """
 
     table: Table
@@ -71,11 +74,13 @@ class Chart:
     rows: list[Row] = field(default_factory=list)
     rounds: list[Round] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
+    taken: Collection[str] = ()
 
     @classmethod
-    def of(cls, table: Table, symbols: list[str]) -> Chart:
-        """Return the chart of a table."""
-        chart = cls(table, symbols, [Sum.variable(name) for name in symbols], rows=list(table.rows))
+    def of(cls, table: Table, symbols: list[str], taken: Collection[str] = ()) -> Chart:
+        """Return the chart of a table, with no variables of names that are taken."""
+        places = [Sum.variable(name) for name in symbols]
+        chart = cls(table, symbols, places, rows=list(table.rows), taken=frozenset(taken))
         for name, place, rate in zip(symbols, table.q, table.v, strict=True):
             chart.start[name], chart.rates[name] = place, rate
         while any(chart._solves(row) for row in chart.rows):
@@ -207,7 +212,7 @@ class Chart:
 
     def _new(self, name: str, taken: str = "") -> str:
         """Return a name that no variable has."""
-        used, count, new = {*self.symbols, *self.start, taken}, 1, name
+        used, count, new = {*self.symbols, *self.start, *self.taken, taken}, 1, name
         while new in used:
             count += 1
             new = f"{name}{count}"

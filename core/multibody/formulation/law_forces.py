@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from core.formulas import Node
+from core.formulas import Node, names_of
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.formula_nodes import call, node_of_sum
-from core.multibody.formulation.trigonometric_sums import Sum
+from core.multibody.formulation.trigonometric_sums import TIME, Sum
 from core.multibody.language.motion_formulas import LENGTH
 from core.multibody.laws.law import Input, Law
+
+MULTIPLIER = "lambda_"
+"""How the names of multipliers begin."""
 
 
 def force_symbols(laws: Sequence[Law], taken: Collection[str]) -> list[str]:
@@ -33,6 +37,8 @@ def law_nodes(chart: Chart, names: Sequence[str]) -> dict[str, Node]:
 def _node(node: Node, law: Law, chart: Chart) -> Node:
     if node.kind == "name" and node.text in law.inputs:
         return node_of_sum(_value(law.inputs[node.text], chart))
+    if node.kind == "name" and _is_ambiguous(node.text):
+        return node_of_sum(Sum.number(law.numbers[node.text]))
     inner = tuple(_node(one, law, chart) for one in node.inner)
     if node.kind == LENGTH:
         total = None
@@ -42,6 +48,17 @@ def _node(node: Node, law: Law, chart: Chart) -> Node:
         assert total is not None, "a speed has components"
         return call("sqrt", total)
     return Node(node.kind, node.text, inner)
+
+
+def constants_of(law: Law) -> dict[str, Ball]:
+    """Return the named constants that stand in a law."""
+    used = names_of(law.root) - set(law.inputs)
+    return {name: law.numbers[name] for name in sorted(used) if not _is_ambiguous(name)}
+
+
+def _is_ambiguous(name: str) -> bool:
+    """Return whether a constant is called as the time or a multiplier is."""
+    return name == TIME or name.startswith(MULTIPLIER)
 
 
 def _value(given: Input, chart: Chart) -> Sum:

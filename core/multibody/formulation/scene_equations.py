@@ -10,7 +10,7 @@ from core.formulas import Node
 from core.multibody.algebra.directions import scalar_product
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import Ball, is_zero
-from core.multibody.equations_answer import ConservedQuantity, SceneEquations
+from core.multibody.equations_answer import ConservedQuantity, LinearEquations, SceneEquations
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.closed_forms import closed_forms
 from core.multibody.formulation.constants import Constants
@@ -18,7 +18,7 @@ from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
 from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
 from core.multibody.formulation.lagrange import ENERGY, Conserved, lagrange_equations, measures_of, value_at_start
-from core.multibody.formulation.law_forces import force_symbols, law_nodes
+from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
 from core.multibody.formulation.linear_equations import linear_equations
 from core.multibody.formulation.sides import Sides, constant_accelerations, equation_sides
 from core.multibody.formulation.symbols import columns_of, coordinates_of, symbols_of
@@ -43,7 +43,7 @@ class _Written:
     forces: dict[str, Node] = field(default_factory=dict)
     lagrangian: list[Sum] | None = field(default_factory=list)
     conserved: list[tuple[Conserved, Ball]] = field(default_factory=list)
-    linear: list[tuple[list[str], Sequence[Sum]]] = field(default_factory=list)
+    linear: list[LinearEquations] = field(default_factory=list)
     closed: dict[str, Node] = field(default_factory=dict)
     numbers: dict[str, Ball] = field(default_factory=dict)
     places: dict[int, Sum] = field(default_factory=dict)
@@ -106,7 +106,7 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
             )
             for one, value in conserved
         ),
-        tuple(one for names, sums in written.linear for one in linear_equations(names, sums)),
+        tuple(written.linear),
         {name: constants.formula(node) for name, node in written.closed.items()},
     )
     # All constants are known when everything is written.
@@ -137,9 +137,10 @@ def _write_part(
 ) -> None:
     """Write a part in the variables of its chart."""
     # Rows that follow from others have no multipliers of their own.
-    chart = Chart.of(replace(piece.table, rows=[piece.table.rows[r] for r in piece.chosen]), symbols)
+    table = replace(piece.table, rows=[piece.table.rows[r] for r in piece.chosen])
+    chart = Chart.of(table, symbols, written.coordinates)
     names = force_symbols(piece.table.acting, written.forces)
-    multipliers = [f"lambda_{written.multipliers + k + 1}" for k in range(len(chart.rows))]
+    multipliers = [f"{MULTIPLIER}{written.multipliers + k + 1}" for k in range(len(chart.rows))]
     written.multipliers += len(multipliers)
     found = lagrange_equations(chart, names, multipliers)
     written.coordinates |= coordinates_of(chart, columns)
@@ -148,14 +149,14 @@ def _write_part(
     written.constraints += [(node_of_sum(one), Node("number", "0")) for one in measures_of(chart)]
     written.forces |= law_nodes(chart, names)
     for law in piece.table.acting:
-        written.numbers |= law.numbers
+        written.numbers |= constants_of(law)
     if found.lagrangian is None:
         written.lagrangian = None
     elif written.lagrangian is not None:
         written.lagrangian.append(found.lagrangian)
     written.conserved += [(one, value_at_start(chart, one.formula)) for one in found.conserved]
     if not multipliers and not piece.table.acting:
-        written.linear.append((list(found.equations), list(found.equations.values())))
+        written.linear += linear_equations(found.equations, chart.start)
     written.closed |= closed_forms(chart, motion, constant_accelerations(found.equations))
     for k, i in enumerate(piece.indices):
         written.places[i] = chart.places[k]

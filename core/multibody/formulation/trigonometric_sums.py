@@ -115,6 +115,10 @@ class Sum:
         """Return the names of variables that occur outside of sines and cosines."""
         return {variable.name for term in self.terms for variable, _ in term.factors}
 
+    def in_places(self) -> set[str]:
+        """Return the names of variables that occur themselves, not only their rates, outside of sines and cosines."""
+        return {variable.name for term in self.terms for variable, _ in term.factors if variable.order == 0}
+
     def in_waves(self) -> set[str]:
         """Return the names of variables that occur inside of sines and cosines."""
         return {name for term in self.terms for name, _ in term.wave}

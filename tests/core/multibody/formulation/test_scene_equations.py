@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import cmath
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import mpmath
@@ -18,6 +19,7 @@ from core.multibody.solve import solve_scene
 from service.requests.described_scene import SCENE_FIELDS
 from service.routes.scene_catalogue import scene_catalogue
 from tests.core.multibody.formulation.reading import Jet, evaluated, solved
+from tests.core.multibody.random_scenes import any_scene, attracted_or_rolling
 
 AGREED = 1e-12
 """Largest difference of accelerations, relative to the largest of the scene."""
@@ -121,6 +123,33 @@ def test_printed_equations_have_the_accelerations_of_the_answer(name: str) -> No
         assert abs(printed - value) <= AGREED * size, (column, printed, value)
 
 
+@pytest.mark.parametrize("make", [any_scene, attracted_or_rolling])
+@pytest.mark.parametrize("seed", range(14))
+def test_printed_equations_of_random_scenes_have_the_accelerations_of_the_answer(
+    make: Callable[[int], dict[str, Any]], seed: int
+) -> None:
+    scene = scene_of(make(seed))
+    compared = list(agreed(scene, answer_of(scene)))
+    size = max(abs(value) for _, _, value in compared)
+    for column, printed, value in compared:
+        assert abs(printed - value) <= AGREED * size, (column, printed, value)
+
+
+def test_constants_keep_out_of_the_way_of_time_and_multipliers() -> None:
+    """A force of -3 x by constants called t and lambda_1, beside a row that has a multiplier."""
+    drive = {"kind": "force", "place": "p", "force": ["-t*lambda_1*x*cos(c1*0)", "0*vx"]}
+    question = {
+        "let": {"t": 2, "lambda_1": 1.5, "c1": 7},
+        "bodies": {"p": {"mass": 1, "at": [1, 0], "velocity": [0.3, 0]}},
+        "connections": [drive],
+    }
+    scene = scene_of(question)
+    answer = answer_of(scene)
+    assert answer.equations is not None
+    assert {column: printed for column, printed, _ in agreed(scene, answer)}["p.x"] == pytest.approx(-3, rel=1e-14)
+    assert "t" not in answer.equations.constants
+
+
 @pytest.mark.parametrize("name", sorted(set(scene_catalogue()) - UNDECIDED))
 def test_printed_forces_have_the_values_of_the_answer(name: str) -> None:
     scene = scene_of(scene_catalogue()[name].question)
@@ -201,3 +230,28 @@ def names_in(text: str, answer: SceneSolution) -> list[str]:
     found = re.findall(r"[A-Za-z][A-Za-z0-9_]*(?:-[A-Za-z0-9_]+)*(?:\.[A-Za-z][\w-]*)*(?!\w*\()", text)
     functions = {"sin", "cos", "sqrt", "exp", "atan2"}
     return [name for name in found if name not in functions]
+
+
+def test_matrices_have_the_modes_of_the_places_of_rest() -> None:
+    """The search for equilibria finds the same small motions by the table and its null space."""
+    compared = 0
+    for name in ("simple-pendulum", "double-pendulum", "pendulum-on-cart", "loaded-hoop", "two-masses-two-springs"):
+        scene = scene_of(scene_catalogue()[name].question)
+        answer = solve_scene(scene, [], ["equations", "equilibria"])
+        assert answer.equations is not None
+        (linear,) = answer.equations.linear
+        squares = np.linalg.eigvals(np.linalg.solve(np.array(linear.mass), -np.array(linear.stiffness)))
+        modes = [cmath.sqrt(square) for square in squares]
+        found = sorted((abs(mode.imag), abs(mode.real)) for mode in modes)
+        known = [
+            # What is free to go as a whole has no part in the motion, and no frequency.
+            sorted({(one.frequency, abs(one.growth_rate)) for one in place.modes} - {(0.0, 0.0)})
+            for place in answer.equilibria or ()
+        ]
+        assert any(len(own) == len(found) and np.allclose(own, found, rtol=1e-12, atol=1e-12) for own in known), (
+            name,
+            found,
+            known,
+        )
+        compared += 1
+    assert compared == 5
