@@ -28,8 +28,8 @@ from core.multibody.motion.motion import Motion
 from core.multibody.motion.turning_body import TurningBody, turning_body
 from core.multibody.start import NumberKind, energy_of
 
-MOST_COORDINATES = 40
-"""Coordinates of the tables of the parts together: chains of twenty links have equations that nobody reads."""
+MOST_COORDINATES = 24
+"""Coordinates of the tables of the parts together: the equations of twelve links, or of a bicycle, nobody reads."""
 
 
 @dataclass

@@ -129,10 +129,10 @@ def coordinates_of(chart: Chart, columns: Mapping[int, Node]) -> dict[str, Node 
         lengths = [key[0] for key in one.radius if key]
         if len(lengths) == 1 and found.get(chart.symbols[lengths[0]], flat) is None:
             found[chart.symbols[lengths[0]]] = _length(flat, one.radius, lengths[0])
-    for row in chart.rows:
+    for row in chart.table.rows:
         for i, name in enumerate(chart.symbols):
             if found.get(name, row) is None and row.measure is not None:
-                found[name] = _from_square(row.measure, i, columns)
+                found[name] = _from_square(row.measure, i, columns) or _from_product(row.measure, i, columns)
     return {name: found[name] for name in chart.variables}
 
 
@@ -143,6 +143,22 @@ def _from_square(measure: Poly, i: int, columns: Mapping[int, Node]) -> Node | N
         return None
     rest = combined((-1 / measure[i, i], {key: value for key, value in measure.items() if key != (i, i)}))
     return None if _unknown(rest, columns) else call("sqrt", node_of_poly(rest, columns))
+
+
+def _from_product(measure: Poly, i: int, columns: Mapping[int, Node]) -> Node | None:
+    """Return a coordinate in which a measure is linear, with a factor of others, None of another one."""
+    factor: Poly = {}
+    rest: Poly = {}
+    for key, value in measure.items():
+        if key.count(i) > 1:
+            return None
+        if i in key:
+            factor[tuple(k for k in key if k != i)] = -value
+        else:
+            rest[key] = value
+    if not factor or _unknown(factor, columns) or _unknown(rest, columns):
+        return None
+    return Node("/", inner=(node_of_poly(rest, columns), node_of_poly(factor, columns)))
 
 
 def _length(flat: Node, radius: Poly, i: int) -> Node:
