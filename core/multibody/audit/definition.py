@@ -20,7 +20,10 @@ NOTHING: Mapping[str, Numbers] = {}
 
 
 class InPieces(Protocol):
-    """A formula, as far as its pieces go."""
+    """A formula: its value, and its pieces."""
+
+    def value(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return the value, shape ()."""
 
     @property
     def switches(self) -> bool:

@@ -30,6 +30,9 @@ NODES = 7
 SLOWEST = 0.05
 """Decay of the coefficients, two terms on, above which the terms that are left out are not known to be smaller."""
 
+FORMULAS_KNOWN = 2.0**-30
+"""Share of its largest value below which nothing is known of the terms of a formula."""
+
 GRID = 2.0**20
 """Places of the samples in a window are multiples of its half width over this: their times are then doubles, and the
 weights are the same in all windows."""
@@ -248,7 +251,21 @@ def _gains(
     # Of windows and bodies near the ends of the doubles nothing is known.
     noise = NOISE * heaviest * extent * max(1.0, extent) / windows.half[:, 0, 0] / windows.half[:, 0, 0]
     unsure += np.repeat(np.where(np.isfinite(noise), noise, np.inf), NODES)
+    unsure += np.repeat(_of_corners(description, samples, windows), NODES)
     return Gains({name: Acceleration(one, angular.get(name)) for name, one in linear.items()}, spins, unsure)
+
+
+def _of_corners(description: Description, samples: Samples, windows: Windows) -> Numbers:
+    """Return infinity for the windows in which a formula has a corner, as drag has where a body turns back, else zero.
+
+    The velocity hides it: its first terms are smooth, and what follows them does not decay as they do.
+    """
+    found, own = np.zeros(len(windows.half)), Windows(windows.half[:, 0, 0].tolist(), FORMULAS_KNOWN)
+    for formula in (one for connection in description.connections for one in connection.formulas):
+        values = np.broadcast_to(formula.value(samples.placement, samples.motion), samples.times.shape)[:, None]
+        _, known = own.rates(values, np.zeros(1, dtype=int), np.zeros(1))
+        found += np.where(np.isfinite(known).reshape(-1, NODES).all(axis=1), 0.0, np.inf)
+    return found
 
 
 def _of_top(

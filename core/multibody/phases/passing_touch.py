@@ -6,32 +6,29 @@ gap is larger on all sides, and what moves leaves it at once, however slowly it 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from core.multibody.algebra.polynomials import Ball, substituted, variables
+from core.multibody.algebra.polynomials import variables
 from core.multibody.contacts.complementarity import Decided
+from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import State, phase_table
+from core.multibody.phases.phase import model_of
+from core.multibody.phases.tracks import Tracks
 from core.multibody.reduction.degenerate_rows import is_least
-from core.multibody.reduction.passes import reduced
-from core.multibody.table.table import Table
+from core.multibody.table.description import Described
 
 
-def without_passing_touch(base: Table, found: Decided, q: Sequence[Ball], v: Sequence[Ball]) -> Decided:
-    """Return the states with those open that the motion leaves.
-
-    Parameters
-    ----------
-    base : Table
-        Without what is closed.
-    q, v : sequence of ball
-        The state.
-    """
+def without_passing_touch(base: Described, found: Decided, tracks: Tracks, start: ContactStart) -> Decided:
+    """Return the states with those open that the motion leaves."""
+    first = tracks.first
     for i, one in enumerate(found.unilateral):
         if found.states[i] is not State.CLOSED:
             continue
-        states = [State.OPEN if k == i else state for k, state in enumerate(found.states)]
-        table = phase_table(base, found.unilateral, states, q, v).table
-        if is_least(table, one.gap) and variables([substituted(one.gap, reduced(table, pinning=True).expressions)]):
-            found = replace(found, states=states)
+        freed = replace(found, states=[State.OPEN if k == i else state for k, state in enumerate(found.states)])
+        phase = phase_table(base.measures.table, found.unilateral, freed.states, first.q, first.v)
+        if not is_least(phase.table, one.gap):
+            continue
+        whole = model_of(base, freed, phase, start).whole
+        if any(motion.moves for motion in whole.motions_of(sorted(variables([one.gap])))):
+            found = freed
     return found

@@ -241,14 +241,14 @@ def phase_of(
                     for both in zip((table.q, table.v), known, strict=True)
                 ]
                 tracks.lose(*lost)
-        models.append(_model(base, found, phase, start))
+        models.append(model_of(base, found, phase, start))
         each.append(Track(track.time, phase.table.q, phase.table.v))
         tables.append(phase)
     unknown = tracks.lost if any(map(any, tracks.lost)) else None
     return Phase(each, models, tables, found.states, found.unilateral, unknown, openings=opening)
 
 
-def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:
+def model_of(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:
     """Return the models of the table of a phase; a series runs in pairs, judged by a coarser one.
 
     Raises

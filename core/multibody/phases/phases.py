@@ -328,7 +328,7 @@ class _Run:
         if isinstance(found, Problem):
             return found
         table = self.base.measures.table
-        found = without_passing_touch(table, found, q, v)
+        found = without_passing_touch(self.base, found, self.tracks, self.start)
         require_pressed_in_plane(self.base, found)
         now = phase_table(table, found.unilateral, found.states, q, v)
         self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)

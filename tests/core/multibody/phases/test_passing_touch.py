@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from core.multibody.solve import solve_scene
+from tests.core.multibody.relations import geometry
 from tests.core.multibody.worked_examples import read
 
 OUTPUTS = ("accelerations", "forces", "trajectory", "forces-in-time")
@@ -60,11 +61,21 @@ def test_in_space_too() -> None:
     assert answer.accelerations["p"].linear == pytest.approx([3.0, 4.0, 0.0], abs=1e-14)
 
 
-def test_at_rest_the_load_is_shared_with_the_floor() -> None:
-    answer = solve_scene(read(bob(ROD)), [0.5], OUTPUTS)
-    assert answer.forces is not None
-    assert answer.forces["c.normal"].value is None
-    assert answer.forces["c.normal"].shared_with == ("c", "r")
+@pytest.mark.parametrize("sides", [None, (3, 4, 5), (5, 12, 13)])
+def test_at_rest_the_load_is_shared_with_the_floor(sides: tuple[int, int, int] | None) -> None:
+    body = {"mass": 2, "inertia": 0.2, "at": [0, -0.5], "angle": 0.0, "places": {"top": [0, 0.5], "end": [0, -0.5]}}
+    pin = {"kind": "pin", "name": "r", "a": "p.top", "b": [0, 0]}
+    end = {"kind": "contact", "name": "c", "place": "p.end", "on": {"at": [0, -1]}}
+    for given in (bob(ROD), {**bob(pin), "bodies": {"p": body}, "connections": [pin, end]}):
+        scene = given
+        if sides is not None:
+            turned = geometry.turned({**given, "times": [0.5]}, sides=sides)
+            assert turned is not None
+            scene = {key: turned.request[key] for key in given}
+        answer = solve_scene(read(scene), [0.5], OUTPUTS)
+        assert answer.forces is not None
+        assert answer.forces["c.normal"].value is None
+        assert answer.forces["c.normal"].shared_with == ("c", "r")
 
 
 def test_a_platform_hangs_on_parallel_rods_above_a_floor_that_it_touches() -> None:
