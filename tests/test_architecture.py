@@ -240,6 +240,7 @@ TESTED_IN = {
     "core/bodies/pinned.py": "core/rotation/test_torque_free.py",
     "core/assessment/judged_claims.py": "core/assessment/test_grader.py",
     "core/assessment/question_source.py": "core/assessment/test_graded_question.py",
+    "core/assessment/stated_bounds.py": "core/assessment/test_graded_question.py",
     "core/assessment/results.py": "core/assessment/test_answer_key.py",
     "core/bodies/uniform.py": "core/bodies/test_solids.py",
     "core/systems/budget.py": "core/systems/methods/test_fixed_step.py",

@@ -28,6 +28,7 @@ from core.assessment.formula_variations import VARIATIONS, Parameters, Variation
 from core.assessment.judged_formulas import ENOUGH
 from core.assessment.propagation import Propagation, numbers_of, relative_uncertainties
 from core.assessment.question_source import Source
+from core.assessment.stated_bounds import body_axis_of, bound_beside, distance_of
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.work import spend
@@ -55,9 +56,6 @@ CONDITIONING, ROUNDING = 8.0, 2e-15
 """Numerical error of figures whose answer states none: so many times the effect of half a unit in the last place of
 every input, and this share of the figure (docs/accuracy.md)."""
 
-ALONG = 1e-9
-"""By how much the component of a unit vector along a body axis may miss 1."""
-
 MOST_CERTIFIED = 20
 """Times of a request that is answered in proven digits, too."""
 
@@ -67,9 +65,6 @@ BETWEEN_POINTS = "measured (curve through its points)"
 ESTIMATE = "estimate (conditioning)"
 UNKNOWN = "unknown"
 """Unit of a number that none is declared for: nothing is said of the dimensions of formulas with it."""
-
-ONE_ERROR = ("value", "values", "time", "least", "largest")
-"""Figures of objects whose `error` is that of these alone."""
 
 OF_METHOD = "estimate (rounding of the method that the question names)"
 
@@ -263,10 +258,10 @@ class GradedQuestion:
         accuracy: Any = answer.get("accuracy")
         if self.subject == TRAJECTORY and path[0] in COLUMNS:
             return self._sampled(bare, path[0], size, accuracy)
-        axis = _body_axis(answer, path)
+        axis = body_axis_of(answer, path)
         inherited, bare = self._propagation.of(path, bare), replace(bare, body_axis=axis)
-        beside = _bound_beside(answer, path)
-        stated = None if beside is None else replace(bare, error=_distance_of(bare, beside), inherited=inherited)
+        beside = bound_beside(answer, path)
+        stated = None if beside is None else replace(bare, error=distance_of(bare, beside), inherited=inherited)
         if accuracy is not None and self.subject != TRAJECTORY:
             how = inside(accuracy, "how")
             if stated is not None:
@@ -278,7 +273,7 @@ class GradedQuestion:
             errors, how = self._errors
             bound = value_at(errors, path)
             if bound is not None:
-                return replace(bare, error=_distance_of(bare, bound), how=how, inherited=inherited)
+                return replace(bare, error=distance_of(bare, bound), how=how, inherited=inherited)
         proven = self._proven(path, bare)
         if proven is not None:
             return replace(bare, error=proven, how=CERTIFIED, inherited=inherited)
@@ -324,50 +319,3 @@ class GradedQuestion:
             return replace(bare, error=ROUNDING * norm, how=OF_METHOD, inherited=inherited)
         scale = max(norm, bare.scale) if bare.form == "samples" else bare.scale
         return replace(bare, scale=scale, error=error * norm, how=accuracy["how"], inherited=inherited)
-
-
-def _bound_beside(answer: Mapping[str, Any], path: Path) -> float | Floats | None:
-    """Return the bound that an answer states of a figure: under `errors` by its name, or as `error` of the only one."""
-    names = [k for k, step in enumerate(path) if isinstance(step, str)]
-    for k in reversed(names):
-        bound = inside(_reached(answer, path[:k]), "errors")
-        for step in path[k:]:
-            if isinstance(bound, (float, list, tuple, np.ndarray)) or bound is None:
-                break
-            # Values by names have their errors by the same names beside them.
-            bound = bound if step == "values" and isinstance(bound, Mapping) else inside(bound, step)
-        found = value_at({"": bound}, ("",))
-        if isinstance(found, (float, np.ndarray)):
-            return found
-    if path[names[-1]] in ONE_ERROR:
-        found = value_at(answer, (*path[: names[-1]], "error"))
-        return found if isinstance(found, (float, np.ndarray)) else None
-    return None
-
-
-def _reached(answer: Any, path: Path) -> Any:
-    """Return whatever stands at a path of an answer."""
-    for step in path:
-        answer = inside(answer, step)
-    return answer
-
-
-def _distance_of(bare: Reference, bound: float | Floats) -> float:
-    """Return how far a figure is from the true one, as its form measures it, if its entries are wrong by `bound`."""
-    wrong = float(np.max(bound))
-    # A projection is the product of a unit vector with itself.
-    return 6.0 * wrong if bare.form in ("axes", "direction") else wrong
-
-
-def _body_axis(answer: Mapping[str, Any], path: Path) -> int | None:
-    """Return which body axis a figure belongs to, 1, 2 or 3; None if it belongs to none of them."""
-    last = path[-1]
-    if isinstance(last, int) and len(path) > 1 and path[-2] == "moments":
-        axes = value_at(answer, (*path[:-2], "axes"))
-        axis = None if axes is None else axes[:, last]
-    else:
-        axis = value_at(answer, (*path[:-1], "axis"))
-    if not isinstance(axis, np.ndarray) or axis.shape != (3,):
-        return None
-    along = int(np.abs(axis).argmax())
-    return along + 1 if abs(axis[along]) > 1.0 - ALONG else None
