@@ -31,7 +31,7 @@ ENGLISH: Mapping[str, str] = {
     "list-malformed": "Write a list of numbers such as [1.5; 2; 3].",
     "name-unknown": 'The problem has no quantity called "{name}". Its names are: {names}.',
     "name-from-zero": 'The problem has no quantity called "{name}": numbering starts at 1. Its names are: {names}.',
-    "formula-malformed": "The formula is incomplete, or has a sign that is not allowed in it.",
+    "formula-malformed": "The formula is incomplete, or has a sign that is not allowed in it. Write * between factors.",
     "formula-not-expected": "A formula is not possible here: the answer is not a number.",
     "form-number": "Give one number.",
     "form-word": "Give one of the words of the problem, or true or false.",

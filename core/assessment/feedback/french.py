@@ -33,7 +33,7 @@ FRENCH: Mapping[str, str] = {
     "name-unknown": "L'énoncé ne contient aucune grandeur nommée « {name} ». Les noms sont : {names}.",
     "name-from-zero": "L'énoncé ne contient aucune grandeur nommée « {name} » : la numérotation commence à 1. Les "
     "noms sont : {names}.",
-    "formula-malformed": "La formule est incomplète ou contient un signe non admis.",
+    "formula-malformed": "La formule est incomplète ou contient un signe non admis. Écrivez * entre les facteurs.",
     "formula-not-expected": "Une formule n'est pas possible ici : la réponse n'est pas un nombre.",
     "form-number": "Donnez un seul nombre.",
     "form-word": "Donnez l'un des mots de l'énoncé, ou true ou false.",

@@ -34,7 +34,8 @@ GERMAN: Mapping[str, str] = {
     "name-unknown": "In der Aufgabe gibt es keine Größe „{name}“. Die Namen sind: {names}.",
     "name-from-zero": "In der Aufgabe gibt es keine Größe „{name}“: Die Zählung beginnt bei 1. Die Namen sind: "
     "{names}.",
-    "formula-malformed": "Die Formel ist unvollständig oder enthält ein unzulässiges Zeichen.",
+    "formula-malformed": "Die Formel ist unvollständig oder enthält ein unzulässiges Zeichen. "
+    "Schreiben Sie * zwischen Faktoren.",
     "formula-not-expected": "Eine Formel ist hier nicht möglich: Gefragt ist keine einzelne Zahl.",
     "form-number": "Geben Sie eine einzelne Zahl an.",
     "form-word": "Geben Sie eines der Wörter der Aufgabe oder true oder false an.",

@@ -33,7 +33,7 @@ SPANISH: Mapping[str, str] = {
     "name-unknown": "El problema no tiene ninguna magnitud llamada «{name}». Los nombres son: {names}.",
     "name-from-zero": "El problema no tiene ninguna magnitud llamada «{name}»: la numeración empieza en 1. Los "
     "nombres son: {names}.",
-    "formula-malformed": "La fórmula está incompleta o contiene un signo no admitido.",
+    "formula-malformed": "La fórmula está incompleta o contiene un signo no admitido. Escriba * entre los factores.",
     "formula-not-expected": "Aquí no es posible una fórmula: la respuesta no es un número.",
     "form-number": "Dé un solo número.",
     "form-word": "Dé una de las palabras del problema, o true o false.",
