@@ -22,6 +22,7 @@ from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.execution.request_handler import RequestHandler
 from service.execution.supervision import end_with_supervisor, remove_temporary_files
+from service.execution.unused_memory import give_back
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
 from service.http.target import host_of, is_allowed, of_target
@@ -188,6 +189,7 @@ class Service(FastAPI):
         # What has been built until now stays for good: the collector of garbage need not walk through it ever again.
         gc.freeze()
         gc.enable()
+        give_back()
         self.warm, self._starting = True, False
         at = f" at {self.address}" if self.address else ""
         LOG.info("ready%s", at, extra={"compute_processes": self.compute.size})
