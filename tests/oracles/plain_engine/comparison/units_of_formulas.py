@@ -64,6 +64,24 @@ def winched(draw: Draw) -> Unit:
     return Unit({p: body}, [rod], [p])
 
 
+def slid(draw: Draw) -> Unit:
+    """Return a carriage whose place on its guide is a formula of time, with a pendulum or a mass on a spring."""
+    k, p = draw.name("carriage"), draw.name("bob")
+    c, s, angle = draw.direction()
+    by = draw.one(("sin(2*t)/2", "t^2/2", "(1 - cos(3*t))/4", "t"))
+    guide = {"kind": "slider", "name": draw.name("guide"), "a": k, "b": draw.at(0, 0), "drive": by}
+    if draw.chance(0.5):
+        guide["slope"] = angle
+    bodies: Json = {
+        k: {"mass": draw.mass(), "at": draw.at(0, 0)},
+        p: {"mass": draw.mass(), "at": draw.at(s, f"-({c})")},
+    }
+    link: Json = {"kind": draw.one(("rod", "spring")), "name": draw.name("link"), "a": p, "b": k}
+    if link["kind"] == "spring":
+        link["stiffness"] = 20
+    return Unit(bodies, [guide, link], [p])
+
+
 def lifted(draw: Draw) -> Unit:
     """Return a block on a table that time moves, which it may leave and meet again."""
     lift, p = draw.name("lift"), draw.name("block")
@@ -112,6 +130,8 @@ def on_a_curve(draw: Draw) -> Unit:
             (f"{p}.y - {x}^3/3 + {x}", (0, "0")),
             (f"{x}^2 + 4*{p}.y^2 - 1", (0.6, "-0.4")),
             (f"{x}*{p}.y + 1/2", (1, "-0.5")),
+            (f"{p}.y - sin(3*{x})/5", (0, "0")),
+            (f"{p}.y - exp(-{x})/2", (0, "1/2")),
             (f"sqrt({x}^2 + {p}.y^2) - {x}/2 - 1", (0, "-1")),
         )
     )
@@ -189,6 +209,13 @@ def on_a_surface(draw: Draw) -> Unit:
         by = draw.one(("1 + t/4", "1 + sin(2*t)/5"))
         winch = {"kind": "rod", "name": draw.name("winch"), "a": p, "b": [f"{draw.x}", 0, 0], "drive": by}
         return Unit({p: body | {"at": [f"{draw.x} + 0.6", 0, "-0.8"]}}, [winch], [p])
+    if draw.chance(0.25):
+        helix = [(f"{p}.x - {draw.x}", f"cos(3*{p}.z)"), (f"{p}.y", f"sin(3*{p}.z)")]
+        turns = [
+            {"kind": "relation", "name": draw.name(f"helix{k}"), "of": of, "equals": to}
+            for k, (of, to) in enumerate(helix)
+        ]
+        return Unit({p: body | {"at": [f"{draw.x} + 1", 0, 0]}}, turns, [p])
     relation = {"kind": "relation", "name": draw.name("surface"), "of": of, "equals": 0}
     if draw.chance(0.25):
         relation["equals"] = "t^2/8"
@@ -199,6 +226,7 @@ PLANE: tuple[Callable[[Draw], Unit], ...] = (
     shaken,
     turned_by_time,
     winched,
+    slid,
     lifted,
     related_wheels,
     on_a_curve,

@@ -185,7 +185,12 @@ def twisted(draw: Draw) -> Unit:
         "at": [f"{draw.x}", 0, 0],
         "angular_velocity": [0, 0, draw.one((0, 2))],
     }
-    torque = {"kind": "torque", "name": draw.name("twist"), "body": p, "torque": draw.one(([0, 0, 0.1], [0.1, 0, 0.2]))}
+    torque = {
+        "kind": "torque",
+        "name": draw.name("twist"),
+        "body": p,
+        "torque": draw.one(([0, 0, 0.1], [0.1, 0, 0.2], [0, "sin(3*t)/5", 0])),
+    }
     return Unit({p: body}, [torque], [p])
 
 
