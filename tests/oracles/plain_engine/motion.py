@@ -95,6 +95,8 @@ def follow(
     if found.undefined:
         raise NotSupported("; ".join(sorted(set(found.undefined.values()))))
     mechanism = Mechanism(Reader(scene), found.connections)
+    if mechanism.chains and any(connection.everywhere for connection in scene.connections):
+        raise NotSupported("what acts everywhere does so on the links of a chain, too")
     mechanism.gravity = mechanism.gravity * heavier
     return _Run(mechanism, sorted(times), tolerance, faster).go()
 

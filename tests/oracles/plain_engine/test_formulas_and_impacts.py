@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from core.multibody.audit.definition import Touch
+from tests.oracles.plain_engine.mechanism import NotSupported
 from tests.oracles.plain_engine.slip_in_impact import impulses
 from tests.oracles.plain_engine.test_closed_forms import G, acceleration, moved, near, position, shown, spin, velocity
 
@@ -84,6 +85,17 @@ def test_a_bead_on_a_parabola_of_a_relation() -> None:
     near([y, v @ v / 2], [x * x / 2, G * (0.5 - y)])
     # At rest it is accelerated along the tangent (1, 1).
     near(acceleration(motion, "p"), [-G / 2, -G / 2])
+
+
+@pytest.mark.parametrize(
+    "everywhere",
+    [{"kind": "field", "acceleration": ["1", "0"]}, {"kind": "spinning-frame", "rate": 1, "about": "normal"}],
+)
+def test_what_acts_on_the_links_of_a_chain_is_refused_by_name(everywhere: dict[str, Any]) -> None:
+    bodies = {"a": {"mass": 1, "at": [0, -0.5]}, "b": {"mass": 1, "at": [-0.8, -0.6]}}
+    chain = {"kind": "chain", "through": ["a", [0, 0], "b"], "density": 1.2}
+    with pytest.raises(NotSupported, match="links of a chain"):
+        moved(bodies, [chain, everywhere], [0.1])
 
 
 def row(**more: Any) -> Any:
