@@ -5,6 +5,7 @@ import { Board } from "./board.js";
 import { CurveChoice } from "./curve_choice.js";
 import { $, make, written } from "./dom.js";
 import { EquationsPanel } from "./equations_panel.js";
+import { Exercise } from "./exercise.js";
 import { FindBox } from "./find_box.js";
 import { facesAt, faultInWords, partOf } from "./impossible.js";
 import { Gallery } from "./gallery.js";
@@ -79,8 +80,10 @@ function look() {
 
 const described = () => (doc.sound && !isNamed(state.scene) && Object.keys(doc.scene.value.bodies ?? {}).length ? doc.scene : null);
 const equations = new EquationsPanel(described);
+const asked = { scene: described, answer: () => answer, stop: () => player.stop };
+const exercise = new Exercise(asked);
 const findBox = new FindBox({
-  scene: described, answer: () => answer, stop: () => player.stop,
+  ...asked,
   set: (pointer, text) => { edit("Value taken", doc.scene.withSource(pointer, text)); },
 });
 
@@ -292,6 +295,7 @@ function show({ answer: next, text }, how, path) {
     compareByMethod();
     equations.refresh();
     findBox.offer();
+    exercise.offer();
   }
   showRequests({ "the motion": [path, value] });
 }

@@ -1,5 +1,6 @@
 // What can be taken away of a scene: its link, a file of it, pictures, a table, a film, a sheet to print, a frame for another page.
 import { $, make } from "./dom.js";
+import { exerciseLink } from "./exercise.js";
 import { notebookOf } from "./notebook.js";
 
 const FRAMES = 30;
@@ -55,6 +56,7 @@ export function takeAway(page) {
   };
   on("take-link", () => copied(location.href, "The link"));
   on("take-frame", () => copied(`<iframe src="${location.href.replace("/scenes#", "/scenes?embed=1#")}" width="720" height="600" title="${page.title().replaceAll('"', "'")}"></iframe>`, "The frame for another page"));
+  on("take-exercise", () => copied(exerciseLink(location.href, $("exercise-figure").value), "The link to the exercise"));
   on("take-json", () => download(`${page.name()}.json`, page.text(), "application/json"));
   on("take-png", () => new Promise((done) => { page.render(); page.canvas().toBlob((blob) => { if (blob) download(`${page.name()}.png`, blob); done(blob ? null : "The picture cannot be read."); }); }));
   on("take-svg", () => { const svg = page.svg(); if (svg) download(`${page.name()}.svg`, svg, "image/svg+xml"); return svg ? null : "Scenes in space have no SVG; take the PNG."; });
