@@ -23,6 +23,7 @@ from core.multibody.language.contacts import ImpactLaw, Simultaneous
 from core.multibody.language.kinds import KINDS
 from core.multibody.language.reading import scene_from, unknown_field
 from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
+from core.multibody.language.units import LONGEST_UNIT
 from core.multibody.language.written import Number
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
 from core.multibody.statics.thresholds import RestOf
@@ -41,16 +42,18 @@ SEARCHES = ("when", "extremes", "thresholds")
 """The key of each search."""
 
 
-class AngleInDegrees(Request):
-    """An angle in degrees."""
+class NumberInUnit(Request):
+    """An angle in degrees, or a number in a unit of its own, which are converted exactly."""
 
-    degrees: float | str = Field(description="A decimal, or a formula in quotes.")
+    degrees: float | str | None = Field(default=None, description="A decimal, or a formula in quotes; without a unit.")
+    value: float | str | None = Field(default=None, description="A decimal, or a formula in quotes; with its unit.")
+    unit: str | None = Field(default=None, max_length=LONGEST_UNIT, description='"cm", "kg m^2", "km/h", "rpm", ...')
 
 
 class PolarVector(Request):
     """A vector of the plane by its length and its direction."""
 
-    polar: list[float | str | AngleInDegrees] = Field(
+    polar: list[float | str | NumberInUnit] = Field(
         min_length=2, max_length=2, description="Length, and angle from the first axis (rad)."
     )
 
@@ -75,7 +78,7 @@ def _form(hint: Any) -> Any:
         # What may be a number or a vector is turned about an axis: polar vectors are places, and what may be a list of
         # names an object of its own.
         other = Mapping[str, Any] if Sequence[str] in parts else PolarVector
-        shown.append(AngleInDegrees if float in parts else other)
+        shown.append(NumberInUnit if float in parts else other)
     return Union.__getitem__(tuple(_form(part) for part in shown))
 
 
@@ -185,7 +188,7 @@ class SceneDescription(Request):
     let: NamedNumbers = Field(
         default={},
         description="Named constants for formulas; each may use those before it. Also formulas of the motion, which "
-        "mean what they say where a force uses them.",
+        "mean what they say where a force uses them, and functions by points, {points, interpolation, outside}.",
     )
     numbers: Literal["decimals", "doubles"] = Field(
         default="decimals", description="Whether 0.1 is the decimal or the double nearest to it."

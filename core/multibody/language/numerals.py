@@ -20,6 +20,7 @@ from core.errors import InvalidParameter, Path
 from core.formulas import FUNCTIONS, LARGEST_EXPONENT, NAMES_OF_FUNCTIONS, Arithmetic, Formula, is_name, names_in
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.language.tabulated import Tabulated, is_table, tabulated
+from core.multibody.language.units import DEGREES, check_dimension, unit_of
 
 MOST_DIGITS = 200
 """Digits of a number: twice as many as the precision of the set-up distinguishes."""
@@ -153,8 +154,12 @@ class Numerals:
         if isinstance(value, str):
             return self._formula(value, path)
         if isinstance(value, Mapping):
+            if set(value) == {"value", "unit"}:
+                return self._in_unit(value, path)
             if set(value) != {"degrees"}:
-                raise InvalidParameter(path, 'be a number, a formula or {"degrees": number}')
+                raise InvalidParameter(
+                    path, 'be a number, a formula, {"degrees": number} or {"value": number, "unit": text}'
+                )
             inner = value["degrees"]
             if isinstance(inner, Mapping):
                 raise InvalidParameter((*path, "degrees"), "be a number or a formula")
@@ -164,6 +169,14 @@ class Numerals:
         if found != 0:
             self.read[path] = found
         return found + found * self.share if path in self.moved else found
+
+    def _in_unit(self, value: Mapping[str, object], path: Path) -> Ball:
+        """Return a number that has a unit."""
+        unit = unit_of(value["unit"], (*path, "unit"))
+        check_dimension(unit, str(value["unit"]), path)
+        if isinstance(value["value"], Mapping):
+            raise InvalidParameter((*path, "value"), "be a number or a formula")
+        return self.number(value["value"], (*path, "value")) * unit.factor
 
     def _formula(self, text: str, path: Path) -> Ball:
         try:
@@ -180,6 +193,11 @@ class Numerals:
         if isinstance(value, Mapping) and set(value) == {"degrees"} and not isinstance(value["degrees"], Mapping):
             turns = self.number(value["degrees"], (*path, "degrees")) / 180
             sine, cosine = turns.sin_cos_pi()
+            return cosine, sine
+        if isinstance(value, Mapping) and value.get("unit") in DEGREES and set(value) == {"value", "unit"}:
+            # Read as any other, of which simple multiples are exact.
+            self.number(value, path)
+            sine, cosine = (self.number(value["value"], (*path, "value")) / 180).sin_cos_pi()
             return cosine, sine
         sine, cosine = self.number(value, path).sin_cos()
         return cosine, sine

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 Number = int | float | str | Decimal | Fraction | Mapping[str, Any]
-"""A decimal, a formula over names in ``let``, or ``{"degrees": number}``."""
+"""A decimal, a formula over names in ``let``, ``{"degrees": number}``, or ``{"value": number, "unit": text}``."""
 
 Vector = Sequence[Number] | Mapping[str, Any]
 """A list of two or three numbers, or in the plane ``{"polar": [distance, angle]}``."""
