@@ -174,6 +174,19 @@ def test_a_zero_is_located_to_pairs_with_its_state() -> None:
         assert abs(as_exact(value) - expected) <= 1e-30
 
 
+@pytest.mark.parametrize("a", [-0.3, -0.9, -0.999999])
+def test_terms_that_are_wrong_by_a_share_move_a_zero_by_that_times_its_width(a: float) -> None:
+    """The terms of a + x, whose errors add up, are |a| both at the zero, whose rate is that of the circle."""
+    share = 2.0**-40
+    found, moved = (first(quantity) for quantity in (level(a), level(a * (1 - share), 1 + share)))
+    assert found is not None
+    width = located(Circle(), level(a), found.time, found.rest, 1.0).width
+    true = abs(exact(moved) - exact(found)) / share
+    # a (1 - share) is a double.
+    assert true <= width * (1 + 2.0**-12)
+    assert width <= 3 * true
+
+
 def test_a_search_of_too_many_pieces_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(followed, "MOST_PIECES", 20)
     assert first(level("2"), end=9.9) is None
