@@ -5,14 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from flint import arb
 
+from core.arrays import Floats
 from core.multibody.algebra.polynomials import Poly, evaluated
+from core.multibody.contacts.certificates import certificates
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.statics.exact_places import ExactPlace
 from core.multibody.table.description import Described
 from core.multibody.table.table import Table
 
 Terms = list[tuple[float, tuple[int, ...]]]
+
+
+_DEPENDENT = 1e-9
+"""Share of the largest below which doubles take singular values, and what shares do to tensions, for zero."""
 
 
 @dataclass(frozen=True)
@@ -81,10 +88,21 @@ class RestingPlaces:
         scale = np.abs(lines).max(axis=1)
         multipliers = np.linalg.lstsq((lines / scale[:, None]).T, -load, rcond=1e-12)[0] / scale
         edge = -1e-9 * float(np.max(np.abs(load), initial=0.0))
-        return not any(
-            sum(_value(terms, place) * multipliers[row] for row, terms in parts) + _value(own, place) < edge
-            for parts, own in holds.forces
-        )
+
+        def along(values: Floats) -> Floats:
+            return np.array(
+                [sum(_value(terms, place) * values[row] for row, terms in parts) for parts, _ in holds.forces]
+            )
+
+        tensions = along(multipliers) + [_value(own, place) for _, own in holds.forces]
+        if not (tensions < edge).any():
+            return True
+        # What follows from others may share their load otherwise.
+        _, sizes, every = np.linalg.svd((lines / scale[:, None]).T)
+        rank = int(np.sum(sizes > _DEPENDENT * sizes.max(initial=0.0)))
+        shares = np.array([along(one / scale) for one in every[rank:]]).reshape(-1, len(tensions))
+        slopes = [{f: arb(float(x), _DEPENDENT) for f, x in enumerate(column)} for column in shares.T]
+        return all(sum(float(y) * tensions[k] for k, y in weights.items()) >= edge for weights in certificates(slopes))
 
 
 def _terms(poly: Poly) -> Terms:

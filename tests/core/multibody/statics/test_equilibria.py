@@ -259,3 +259,22 @@ def test_what_cannot_move_rests_where_it_is(holds: list[dict[str, Any]], beside:
         : 1 + beside
     ]
     assert len(found[0].modes) == beside
+
+
+@pytest.mark.parametrize(
+    ("ends", "rests"),
+    [
+        ([[-1, 0], [1, 0], [0, -3]], True),
+        ([[-1, 0], [1, 0], [0, 0]], True),
+        ([[0, 0], [0, -3]], True),
+        ([[-1, -3], [1, -3], [0, -3]], False),
+    ],
+)
+def test_strings_rest_where_some_share_of_the_load_leaves_all_of_them_taut(
+    ends: list[list[float]], rests: bool
+) -> None:
+    strings = [{"kind": "string", "through": ["p", end]} for end in ends]
+    scene = {"gravity": [0, -9.81], "bodies": {"p": {"mass": 2, "at": [0, -1]}}, "connections": strings}
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert any(one.positions["p"] == (0.0, -1.0) for one in found) == rests
