@@ -83,3 +83,13 @@ def test_a_string_that_pulls_is_taut() -> None:
     assert answer.forces is not None
     assert answer.forces["s.tension"].value == 9.81
     assert answer.equilibria
+
+
+@pytest.mark.parametrize("more", ["1e-8", "1e-3", "0.05"])
+def test_a_string_that_is_longer_than_its_way_is_slack_until_that_is_fallen(more: str) -> None:
+    """g t^2/2 is what it is longer by, however little that is."""
+    string = {"kind": "string", "name": "s", "through": ["p", [0, 0]], "length": f"1 + {more}"}
+    scene = {"gravity": [0, -10], "bodies": {"p": {"mass": 1, "at": [0, -1]}}, "connections": [string]}
+    (taut,) = (one for one in solve_scene(read(scene), [1.0], ("trajectory",)).events if one.time > 0)
+    assert (taut.kind, taut.name) == ("taut", "s")
+    assert taut.time == pytest.approx((float(more) / 5) ** 0.5, rel=1e-12)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 from typing import Any
 
 import mpmath
@@ -107,6 +108,17 @@ def test_what_is_symmetric_remains_so() -> None:
         _, found = stated(scene, [0.1])
         assert found.inherited is not None
         assert HALF_ULP < found.inherited < 1e-12
+
+
+def test_equal_entries_of_a_tensor_are_one_number() -> None:
+    """Two moments on its diagonal are those of a symmetric top, and of the entries beside it none changes alone."""
+    top = json.loads(LAGRANGE_TOP)
+    _, expected = stated(top, [0.1])
+    a, b, c = top["bodies"]["top"].pop("moments")
+    top["bodies"]["top"]["tensor"] = [[a, 0, 0], [0, b, 0], [0, 0, c]]
+    assert stated(top, [0.1])[1].inherited == pytest.approx(expected.inherited, rel=1e-9)
+    free = {"mass": 1, "tensor": [[2, 0.1, 0], [0.1, 3, 0.2], [0, 0.2, 4]], "angular_velocity": [1, 2, 3]}
+    assert stated({"gravity": [0, 0, 0], "bodies": {"b": free | {"at": [0, 0, 0]}}}, [0.1])[1].inherited is not None
 
 
 def test_formulas_are_exact_and_their_names_are_not() -> None:
