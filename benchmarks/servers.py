@@ -31,8 +31,14 @@ class Server:
 
     def fork_servers(self) -> list[int]:
         """Return the processes from which compute processes are forked."""
-        found = children(self.pid)
-        return [child for child in found if b"forkserver" in Path(f"/proc/{child}/cmdline").read_bytes()]
+        return [child for child in children(self.pid) if b"forkserver" in command_of(child)]
+
+
+def command_of(process: int) -> bytes:
+    """Return how a process was started, nothing if it has ended."""
+    with contextlib.suppress(OSError):
+        return Path(f"/proc/{process}/cmdline").read_bytes()
+    return b""
 
 
 def children(process: int) -> list[int]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks.servers import children
+from benchmarks.servers import children, command_of
 from core.bodies.measured import PrincipalMoments
 from core.rotation.precession.precession import precession
 
@@ -65,10 +65,10 @@ def fill(soak: Soak, seed: int) -> None:
         if draw.random() < 0.3 and stored_since(soak.folder / "studies", killed):
             killed = time.time()
             for child in children(soak.server.pid):
-                with contextlib.suppress(OSError):
-                    if b"service.studies.runner" in Path(f"/proc/{child}/cmdline").read_bytes():
+                if b"service.studies.runner" in command_of(child):
+                    with contextlib.suppress(ProcessLookupError):
                         os.kill(child, signal.SIGKILL)
-                        soak.outcomes["fault: kill what works on studies"] += 1
+                    soak.outcomes["fault: kill what works on studies"] += 1
         elif soak.small_disk:
             with contextlib.suppress(OSError), filler.open("wb", buffering=0) as file:
                 while file.write(bytes(65_536)) == 65_536:
