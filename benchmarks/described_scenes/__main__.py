@@ -15,6 +15,7 @@ import statistics
 import time
 import timeit
 from collections.abc import Callable
+from functools import partial
 from importlib import metadata
 from typing import Any
 
@@ -89,6 +90,23 @@ def chain(count: int) -> dict[str, Any]:
     return {"gravity": [0, -9.8125], "bodies": bodies, "connections": pins}
 
 
+def stiff(repeats: int) -> dict[str, float]:
+    """Return milliseconds of whole answers about the governor of the catalogue, its sleeve damped, by times (s)."""
+    example = next(entry["example"] for entry in described_examples() if entry["name"] == "centrifugal-governor")
+    ends = {"a": "sleeve", "b": [0, -3]}
+    held = [
+        {"kind": "spring", "name": "spring", **ends, "stiffness": 8e5, "rest_length": 2.2},
+        {"kind": "damper", "name": "damper", **ends, "coefficient": 4e4},
+    ]
+    own = {name: value for name, value in example.items() if name in ("gravity", "bodies")}
+    scene = scene_from({**own, "connections": [*example["connections"], *held]})
+    found = {}
+    for end in (0.1, 1.0, 10.0):
+        run = partial(solve_scene, scene, [end], ("trajectory",), 1e-9)
+        found[str(end)] = round(1e3 * least(run, repeats), 2)
+    return found
+
+
 def summary(rows: dict[str, Any]) -> dict[str, float]:
     """Return how long whole answers take, and how many there are."""
     whole = [row["whole"] for row in rows.values()]
@@ -135,6 +153,7 @@ def main() -> None:
             "scenes": scenes,
         },
         "chains, 1 s, milliseconds by links": chains(3),
+        "stiff governor, milliseconds by times (s)": stiff(3),
         "double pendulum, 10 s": {entrant.name: dial(entrant) for entrant in there},
     }
     text = json.dumps(result, indent=1) + "\n"
