@@ -179,12 +179,35 @@ class Followed:
                 ahead.append(one)
             else:
                 self._left.append(one)
+        self._at_once = min(4 * self._at_once, _AT_ONCE)
+        expanded = self._with_pieces(ahead, closely=closely)
+        if len(ahead) > 1:
+            # What is left of those that are shorter than expected is expanded together as well: one batch of many
+            # pieces takes little longer than one of a single piece.
+            rests = [rest for one in expanded if (rest := self._rest(one)) is not None]
+            if rests:
+                expanded = sorted([*expanded, *self._with_pieces(rests, closely=closely)], key=lambda one: one.start)
+        self._left.extend(reversed(expanded))
+
+    @staticmethod
+    def _rest(one: Interval) -> Interval | None:
+        """Cut an interval to its piece, and return what follows in it, None where the piece is long enough."""
+        if one.batch is None:
+            return None
+        length, end = float(one.batch.lengths[one.number]), one.start + one.reach
+        start = later(one.start, length)
+        if not (one.reach > length and one.start < start < end):
+            return None
+        one.reach = length
+        return Interval(start, end - start)
+
+    def _with_pieces(self, ahead: Sequence[Interval], *, closely: bool) -> list[Interval]:
+        """Return intervals with their pieces; of those that end at a corner, what follows is not expanded yet."""
         self._count += len(ahead)
         if self._count > MOST_PIECES:
             needed = self._count * self._reached / max(ahead[-1].start, self._reached * 2.0**-60)
             what = "pieces of the motion that are searched"
             raise BudgetExceeded(what, needed, MOST_PIECES, path=("times",), remedy="ask for a shorter time")
-        self._at_once = min(4 * self._at_once, _AT_ONCE)
         batch = self._batch(ahead, closely=closely)
         expanded: list[Interval] = []
         for number, one in enumerate(ahead):
@@ -200,7 +223,7 @@ class Followed:
             else:
                 one.closely = True
         self._last = batch.usual
-        self._left.extend(reversed(expanded))
+        return expanded
 
     def _batch(self, ahead: Sequence[Interval], *, closely: bool) -> Batch:
         """Return pieces, and what every quantity does on them."""
