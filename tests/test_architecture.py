@@ -326,6 +326,7 @@ TESTED_IN |= {
         "formulation/notation/test_notations": "formulation/notation/latex formulation/notation/mathml "
         "formulation/notation/names formulation/notation/plain",
         "table/test_formulas_of_time": "audit/driven table/moving_places",
+        "table/test_joints_of_space": "audit/joints_of_space",
         "laws/test_formulas_of_pieces": (
             "equations/starting_pieces laws/corners language/switches phases/formula_ends table/law_pieces"
         ),

@@ -16,6 +16,7 @@ from core.multibody.audit import (
     contact_definitions,
     formula_definitions,
     joint_definitions,
+    joints_of_space,
     law_definitions,
     string_definitions,
 )
@@ -25,7 +26,14 @@ from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.placement import LARGEST, LEAST, Placement, Undefined
 from core.multibody.language.scene import Scene
 
-FORMS = (contact_definitions, formula_definitions, joint_definitions, law_definitions, string_definitions)
+FORMS = (
+    contact_definitions,
+    formula_definitions,
+    joint_definitions,
+    joints_of_space,
+    law_definitions,
+    string_definitions,
+)
 """The modules with the forms of `definition_of` for the kinds of the catalogue: their import registers them."""
 
 

@@ -32,7 +32,7 @@ def pin(connection: Pin, reader: Reader, name: str, path: Path) -> Definition:
     if connection.axis is None:
         return Coincidence(name, (*a.bodies, *b.bodies), a, b, None)
     axis = reader.vector(connection.axis, (*path, "axis"))
-    axes = (_in_body(reader, a.body, axis), _in_body(reader, b.body, axis))
+    axes = (in_body(reader, a.body, axis), in_body(reader, b.body, axis))
     return Coincidence(name, (*a.bodies, *b.bodies), a, b, axes)
 
 
@@ -49,7 +49,7 @@ def weld(connection: Weld, reader: Reader, name: str, path: Path) -> Definition:
     ends = a, b = ends_of(connection, reader, path)
     carrier = 1 if b.body is not None and reader.turns(b.body) else 0
     between = ends[1 - carrier].at(reader.start) - ends[carrier].at(reader.start)
-    arm = _in_body(reader, ends[carrier].body, tuple(between.tolist()))
+    arm = in_body(reader, ends[carrier].body, tuple(between.tolist()))
     return WeldDefinition(name, (*a.bodies, *b.bodies), a, b, carrier, arm, _attitude(reader, a, b))
 
 
@@ -110,7 +110,7 @@ def distance_at_start(reader: Reader, a: Place, b: Place) -> float:
     return float(length(b.at(reader.start) - a.at(reader.start)))
 
 
-def _in_body(reader: Reader, body: str | None, vector: tuple[float, ...]) -> tuple[float, ...]:
+def in_body(reader: Reader, body: str | None, vector: tuple[float, ...]) -> tuple[float, ...]:
     """Return the components in the axes of a body of a vector that is given in space at the start."""
     rotation = None if body is None else reader.start[body].rotation
     return vector if rotation is None else tuple((np.array(vector) @ rotation).tolist())

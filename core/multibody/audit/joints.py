@@ -89,7 +89,7 @@ class Coincidence(Definition):
         """See `Definition.efforts`."""
         rates = self.a.velocity(placement, motion) - self.b.velocity(placement, motion)
         found = {f"{self.name}.{axis}": rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
-        return found if self.axis is None else found | _moments(self.name, self.a.body, self.b.body, motion)
+        return found if self.axis is None else found | moments_between(self.name, self.a.body, self.b.body, motion)
 
     def holding(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.holding`: no moment about the axis."""
@@ -178,7 +178,7 @@ class WeldDefinition(Definition):
         """See `Definition.efforts`."""
         rates = rate(self.apart, placement, motion)
         found = {f"{self.name}.{axis}": rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
-        return found if self.attitude is None else found | _moments(self.name, self.a.body, self.b.body, motion)
+        return found if self.attitude is None else found | moments_between(self.name, self.a.body, self.b.body, motion)
 
 
 @dataclass(frozen=True)
@@ -222,10 +222,10 @@ class SliderDefinition(Definition):
         found = {f"{self.name}.normal": rates[..., 0]}
         if len(self.normals) > 1:
             found = {f"{self.name}.normal.{i + 1}": rates[..., i] for i in range(len(self.normals))}
-        return found if self.attitude is None else found | _moments(self.name, self.a.body, self.b.body, motion)
+        return found if self.attitude is None else found | moments_between(self.name, self.a.body, self.b.body, motion)
 
 
-def _moments(name: str, a: str | None, b: str | None, motion: Motion) -> dict[str, Numbers]:
+def moments_between(name: str, a: str | None, b: str | None, motion: Motion) -> dict[str, Numbers]:
     """Return the power of one unit of each component of the moment on body `a`, in space in the axes of space."""
     spins = [motion[body].spin for body in (a, b) if body is not None and body in motion]
     known = next(spin for spin in spins if spin is not None)

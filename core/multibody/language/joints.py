@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -50,6 +50,39 @@ class Weld(TwoEnded):
         """See `Connection.aspects`."""
         if surroundings.concentric(self.a, self.b):
             return [(self.a, "turn"), (self.b, "turn")]
+        return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
+
+
+@dataclass(frozen=True)
+class Cylindrical(TwoEnded):
+    """In space, place `a` stays on a line along the `axis` through place `b`, about which alone the bodies turn."""
+
+    a: Place
+    b: Place
+    axis: Vector
+    name: str | None = None
+    kind: ClassVar[str] = "cylindrical"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
+
+
+@dataclass(frozen=True)
+class Universal(TwoEnded):
+    """In space, two places coincide, and the first of two `axes`, fixed in `a`, stays at right angles to the second.
+
+    That is fixed in `b`: the axes are those of the cross of a universal joint.
+    """
+
+    a: Place
+    b: Place
+    axes: Sequence[Vector]
+    name: str | None = None
+    kind: ClassVar[str] = "universal"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
         return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
 
 

@@ -19,7 +19,17 @@ from core.multibody.language.forces import (
     Torque,
     TorsionSpring,
 )
-from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Relation, Rod, Slider, Weld
+from core.multibody.language.joints import (
+    BallJoint,
+    Cylindrical,
+    GuideCurve,
+    Pin,
+    Relation,
+    Rod,
+    Slider,
+    Universal,
+    Weld,
+)
 from core.multibody.language.strings import Chain, String
 
 KINDS: Mapping[str, type[Connection]] = MappingProxyType(
@@ -30,6 +40,8 @@ KINDS: Mapping[str, type[Connection]] = MappingProxyType(
             BallJoint,
             Weld,
             Slider,
+            Cylindrical,
+            Universal,
             Rod,
             Relation,
             Rolling,
