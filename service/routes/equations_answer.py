@@ -46,7 +46,8 @@ class SceneEquations(View):
     """The equations of motion of a scene, of the first of its phases, in coordinates that suffice."""
 
     coordinates: dict[str, str | None] = Field(
-        description="Coordinates, each with its formula of columns; null for turns of balls, which no column shows."
+        description="Coordinates, each with its formula of columns; null for what no column shows: turns of balls, and "
+        "the directions of strings that run onto turning discs."
     )
     why: list[str] = Field(description="Why these suffice, in sentences.")
     degrees_of_freedom: Annotated[int, Unit("1")]

@@ -141,7 +141,7 @@ class Chart:
         for among in sorted(squares.values(), key=len, reverse=True):
             for chosen in _groups(among):
                 found = None if self._ties(row, chosen) else _round(measure, chosen)
-                if found is not None and self._has_radius(found[1], chosen):
+                if found is not None and self._is_apart(*found, chosen) and self._has_radius(found[1], chosen):
                     self._take_angles(row, chosen, *found)
                     return True
         return False
@@ -150,6 +150,12 @@ class Chart:
         """Return whether another measure holds an axis to others, as those of a body, whose angles say little."""
         others = [key for one in self.rows if one is not row for key in one.measure or {} if len(key) == 2]
         return len(chosen) == 3 and any(len(set(key) & set(chosen)) == 1 for key in others)
+
+    def _is_apart(self, arms: list[Poly], radius: Poly, chosen: list[int]) -> bool:
+        """Return whether neither the centre nor the radius follows, by rows before, what is to go round."""
+        own = {self.symbols[i] for i in chosen}
+        others = {i for form in (*arms, radius) for key in form for i in key} - set(chosen)
+        return not any(own & self.places[i].names() for i in others)
 
     def _has_radius(self, radius: Poly, chosen: list[int]) -> bool:
         inside = {i for key in radius for i in key}
@@ -226,7 +232,8 @@ class Chart:
             return False
         for i, j in sorted((product, product[::-1]), key=lambda pair: self.table.units[pair[0]] != "1/m"):
             other = self.places[j].terms
-            if self._free(i) and len(other) == 1 and not next(iter(other)).function:
+            apart = self.symbols[i] not in self.places[j].names()
+            if apart and self._free(i) and len(other) == 1 and not next(iter(other)).function:
                 (term, value) = next(iter(other.items()))
                 inverse = Term(tuple((variable, -power) for variable, power in term.factors))
                 self._replace(self.symbols[i], Sum({inverse: -measure[()] / measure[product] / value}))

@@ -171,7 +171,7 @@ def solved(equations: SceneEquations, columns: Mapping[str, Jet], time: float = 
             jets[name] = Jet(evaluated(formula.plain, jets).value)
     multipliers = sorted(set(re.findall(r"lambda_\d+", every)))
     # Rates of turn about the axes of a body have equations of the first order.
-    first_order = {name for name in equations.coordinates if f"{name}'" in every and f"{name}''" not in every}
+    first_order = {name for name in equations.coordinates if re.search(r"\.(omega|gamma)_[123]$", name)}
     unknowns = [*equations.coordinates, *multipliers]
 
     def residuals(values: Sequence[Number]) -> list[Number]:

@@ -22,6 +22,7 @@ from service.requests.described_scene import SCENE_FIELDS
 from service.routes.scene_catalogue import scene_catalogue
 from tests.core.multibody.formulation.reading import Jet, evaluated, solved
 from tests.core.multibody.random_scenes import any_scene, attracted_or_rolling
+from tests.core.multibody.relations.combined_scenes import plane
 
 AGREED = 1e-12
 """Largest difference of accelerations, relative to the largest of the scene."""
@@ -134,7 +135,7 @@ def test_printed_equations_have_the_accelerations_of_the_answer(name: str) -> No
         assert abs(printed - value) <= AGREED * size, (column, printed, value)
 
 
-@pytest.mark.parametrize("make", [any_scene, attracted_or_rolling])
+@pytest.mark.parametrize("make", [any_scene, attracted_or_rolling, plane])
 @pytest.mark.parametrize("seed", range(14))
 def test_printed_equations_of_random_scenes_have_the_accelerations_of_the_answer(
     make: Callable[[int], dict[str, Any]], seed: int
@@ -144,6 +145,17 @@ def test_printed_equations_of_random_scenes_have_the_accelerations_of_the_answer
     size = max(abs(value) for _, _, value in compared)
     for column, printed, value in compared:
         assert abs(printed - value) <= AGREED * size, (column, printed, value)
+
+
+def test_the_same_places_on_two_circles_are_solved_once() -> None:
+    """A rod and a damper between two points: what the rod has solved is not the centre of a circle for itself."""
+    stones = {"a": {"mass": 1, "at": [0.6, 0.8]}, "b": {"mass": 1, "at": [5.6, 0.8]}}
+    humps = [{"kind": "rod", "a": name, "b": [x, 0]} for name, x in (("a", 0), ("b", 5))]
+    between = [{"kind": "rod", "a": "a", "b": "b"}, {"kind": "damper", "a": "a", "b": "b", "coefficient": 1}]
+    for order in ([*between, *humps], [*humps, *between], [*reversed(between), *humps]):
+        scene = scene_of({"gravity": [0, -10], "bodies": stones, "connections": order})
+        for column, printed, value in agreed(scene, answer_of(scene)):
+            assert abs(printed - value) <= AGREED * 10.0, (column, printed, value)
 
 
 def test_constants_keep_out_of_the_way_of_time_and_multipliers() -> None:
