@@ -83,7 +83,7 @@ def factor(given: str, unit: str) -> float:
 
 
 def _with_signs(given: str) -> str:
-    """Return a unit with the signs that are left out of ``m2``, ``s-1``, ``Nm`` (pint's fineness of a yarn) and ``kgm``.
+    """Return a unit with the signs that are left out of ``m2``, ``s-1``, ``kgm`` and ``Nm``, to pint a yarn's fineness.
 
     The point and the hyphen of ``kg.m2`` and ``N-m`` are products.
     """
