@@ -30,6 +30,7 @@ export const BODY_FIELDS = [
 const ENDS = [place("a", "Of"), place("b", "And")];
 const SMOOTH = number("friction", "Friction coefficient", "", { optional: true, open: true });
 const BOUNCE = number("restitution", "Restitution", "0 to 1", { optional: true });
+const THROWN_BACK = number("tangential_restitution", "Share of the slip turned back", "0 to 1", { optional: true });
 
 export const CONNECTION_FIELDS = {
   pin: ENDS,
@@ -37,13 +38,13 @@ export const CONNECTION_FIELDS = {
   "ball-joint": ENDS,
   slider: [...ENDS, number("slope", "Slope", "° or rad", { angle: true, optional: true }), vector("direction", "Direction", "", { optional: true, space: true })],
   rod: [...ENDS, number("length", "Length", "m", { optional: true }), number("drive", "Length driven by t", "m", { optional: true, open: true })],
-  string: [{ name: "through", words: "Through", type: "through" }, { name: "sides", words: "Sides of drums", type: "sides" }, number("length", "Length", "m", { optional: true }), BOUNCE],
+  string: [{ name: "through", words: "Through", type: "through" }, { name: "sides", words: "Sides of drums", type: "sides" }, number("length", "Length", "m", { optional: true }), SMOOTH, number("turns", "Whole turns around its pegs", "", { optional: true }), BOUNCE],
   chain: [{ name: "through", words: "Through", type: "through" }, number("density", "Mass per length", "kg/m"), number("length", "Length", "m", { optional: true })],
   spring: [...ENDS, number("stiffness", "Stiffness", "N/m", { optional: true }), number("rest_length", "Length at rest", "m", { optional: true }), number("law", "Pull by formula", "N", { optional: true, open: true })],
   "torsion-spring": [...ENDS, number("stiffness", "Stiffness", "N m/rad"), number("rest_angle", "Angle at rest", "° or rad", { angle: true, optional: true })],
   damper: [...ENDS, number("coefficient", "Coefficient", "N s/m", { optional: true }), number("law", "Force by formula", "N", { optional: true, open: true })],
-  contact: [place("place", "Of"), ...ENDS, SMOOTH, BOUNCE],
-  track: [place("place", "Of"), SMOOTH],
+  contact: [place("place", "Of"), ...ENDS, SMOOTH, BOUNCE, THROWN_BACK],
+  track: [place("place", "Of")],
   rolling: [place("place", "Of"), ...ENDS, check("inside", "Inside the other")],
   motor: [place("a", "Turns"), number("rate", "Rate", "rad/s", { optional: true, open: true }), number("drive", "Angle driven by t", "rad", { optional: true, open: true })],
   force: [place("place", "At"), vector("force", "Force", "N", { open: true }), choice("in", "Along the axes of", [["", "the ground"], ["body", "the body"]])],
