@@ -6,6 +6,7 @@ it, which nothing pushes back. At resonance two roots coincide; `Modes` then has
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 from flint import acb
 
 from core.arrays import Floats
+from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, is_zero
 from core.multibody.equations.dynamics import accelerations, restricted
 from core.multibody.equations.packed import pair
@@ -24,6 +26,9 @@ from core.multibody.motion.motion import BallState, Mode, Motion, States
 from core.multibody.motion.uniform import Uniform
 from core.multibody.table.law_pieces import enter
 from core.multibody.table.table import Row, Table
+
+MOST_TURNED = 1e6
+"""Radians up to which turns are counted where several directions turn differently: a million samples of doubles."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +124,27 @@ class DrivenModes(Motion):
             value = complex(z) * np.exp(complex(p) * times)
             q[:, k], v[:, k] = value.real, (complex(p) * value).real
         return q, v
+
+    @property
+    def _turning_rates(self) -> list[Ball]:
+        """By what angle in a second each direction turns, from its coordinate of the smaller number to the other."""
+        swings = list(self.swings.items())
+        return [p.imag if c < s else -p.imag for (c, (_, p)), (s, _) in zip(swings[::2], swings[1::2], strict=True)]
+
+    def angles_turned(self, times: Sequence[Ball]) -> list[Ball] | None:
+        """Return how far what turns evenly has turned, None where several directions turn differently."""
+        rates = self._turning_rates
+        if not rates or not all(is_zero(rate - rates[0]) for rate in rates):
+            return None
+        return [rates[0] * time for time in times]
+
+    def nodes(self, end: float) -> Floats:
+        """Return four times to half a turn of the fastest direction."""
+        turned = max((abs(float(rate)) for rate in self._turning_rates), default=0.0) * abs(end)
+        if turned > MOST_TURNED:
+            reason = f"its directions turn by {turned:.3g} rad, and are counted up to {MOST_TURNED:g}"
+            raise AccuracyUnreachable(None, np.inf, reason, path=("times",))
+        return np.linspace(0.0, end, 2 + math.ceil(4.0 * turned / math.pi))
 
     def keeps_positive(self, length: Poly) -> bool:
         """Return whether the amplitudes of the modes show it."""

@@ -161,3 +161,36 @@ def test_linear_formulas_have_equilibria(formula: str, place: float, frequency: 
     (one,) = found.equilibria
     assert one.positions["p"][0] == pytest.approx(place, abs=1e-15)
     assert [mode.frequency for mode in one.modes] == [pytest.approx(frequency, rel=1e-14)]
+
+
+def driven_pair(name: str, x: float, rate: float) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """Return a bar that a motor turns about a point, and one welded to its end, whose angle is no coordinate."""
+    places = {"top": [-0.5, 0], "end": [0.5, 0]}
+    bar = {"mass": 1, "inertia": 0.1, "at": [x + 0.5, 0], "places": places}
+    other = {"mass": 0.5, "inertia": 0.05, "at": [x + 1, -0.5], "angle": "-pi/2", "places": places}
+    connections: list[dict[str, Any]] = [
+        {"kind": "pin", "a": f"{name}1.top", "b": [x, 0]},
+        {"kind": "motor", "a": f"{name}1", "rate": rate},
+        {"kind": "weld", "a": f"{name}2.top", "b": f"{name}1.end"},
+    ]
+    return {f"{name}1": bar, f"{name}2": other}, connections
+
+
+@pytest.mark.parametrize("rates", [(-2,), (-2, -2), (-2, 5), (3, -3)])
+def test_what_is_welded_to_driven_bars_turns_with_them(rates: tuple[float, ...]) -> None:
+    """Alone at any time; of two that a spring of no length couples, at different rates, as far as turns are counted."""
+    bodies: dict[str, Any] = {}
+    connections: list[dict[str, Any]] = []
+    for name, x, rate in zip("ab", (0, 4), rates, strict=False):
+        own, held = driven_pair(name, x, rate)
+        bodies |= own
+        connections += held
+    if len(rates) > 1:
+        connections.append({"kind": "spring", "a": "a2.end", "b": "b2.end", "stiffness": 3, "rest_length": 0})
+    found = solve_scene(scene_from({"gravity": [0, -10], "bodies": bodies, "connections": connections}), TIMES)
+    assert found.trajectory is not None
+    for name, rate in zip("ab", rates, strict=False):
+        column = found.trajectory.columns[f"{name}2.angle"]
+        wanted = np.array([-np.pi / 2 + rate * t for t in TIMES])
+        assert np.max(np.abs(column.values - wanted)) <= column.error + np.spacing(np.abs(wanted).max())
+        assert column.error < 1e-9
