@@ -47,6 +47,10 @@ def in_units(request: Json, length: int, mass: int, time: int) -> Transformed | 
         for key in ("moments", "tensor"):
             if key in body:
                 body[key] = scaled(body[key], (2, 1, 0))
+        if "shape" in body:
+            body["shape"] = {
+                key: value if key == "kind" else scaled(value, (1, 0, 0)) for key, value in body["shape"].items()
+            }
         if "angular_velocity" in body:
             body["angular_velocity"] = scaled(body["angular_velocity"], (0, 0, -1))
         body["places"] = {name: scaled(place, (1, 0, 0)) for name, place in body.get("places", {}).items()}
