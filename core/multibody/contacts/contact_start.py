@@ -70,6 +70,8 @@ def assemble_contacts(base: Described) -> ContactStart:
     # Rates that are left out are such that what touches stays, if it can, and rolls or rests, if it can.
     fitted = assemble_rates(table, base.measures.coordinates.given, paths, rows)
     _as_written(base, touching, fitted)
+    # What rests has no rate, and not what rounding leaves of one.
+    table.v = [ZERO if is_zero(x) else x for x in table.v]
     return ContactStart(touching, moved, fitted)
 
 

@@ -98,7 +98,8 @@ def _of_track(phase: Phase, k: int, times: Times, *, finer: bool) -> States:
 
 def _later(phase: Phase, k: int, q: Floats, v: Floats, rest: Floats) -> tuple[Floats, Floats]:
     """Return states later by the tails of times: so small that one term of the Taylor series is right to pairs."""
-    gain = phase.models[k].whole.accelerations(q, v)
+    # What rests gains nothing, and not what rounding leaves of the forces on it.
+    gain = np.where(phase.still, 0.0, phase.models[k].whole.accelerations(q, v))
     return _added(q, rest[:, None] * v[..., 0]), _added(v, rest[:, None] * gain)
 
 

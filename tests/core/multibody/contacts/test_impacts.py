@@ -550,3 +550,15 @@ def test_how_contacts_of_one_body_share_friction_says_nothing_of_the_order_of_im
         assert problem.code == "simultaneous-impacts"
         told.append(problem.candidates)
     assert told[0] == told[1] == told[2]
+
+
+@pytest.mark.parametrize("sides", [(3, 4, 5), (5, 12, 13), (8, 15, 17)])
+def test_what_has_landed_flat_has_no_spin_to_the_last_digit(sides: tuple[int, int, int]) -> None:
+    places = {"l": [-0.5, -0.2], "r": [0.5, -0.2]}
+    feet = [{"kind": "contact", "name": k, "place": f"p.{k}", "on": {"at": [0, 0]}, "order": 1} for k in places]
+    body = {"mass": 1, "inertia": 0.1, "at": [0, 0.7], "places": places}
+    scene = {"gravity": [0, -10], "bodies": {"p": body}, "connections": feet, "times": [0.2, 0.5]}
+    turned = geometry.turned(scene, sides=sides).request
+    answer = solve_scene(read({key: x for key, x in turned.items() if key != "times"}), [0.5])
+    spin = column(answer, "p.angular_velocity")
+    assert np.abs(spin.values).max() <= spin.error
