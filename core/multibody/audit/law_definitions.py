@@ -29,6 +29,7 @@ from core.multibody.audit.laws import (
     TorsionSpringDefinition,
     TurnDamper,
 )
+from core.multibody.audit.turns_in_space import AxialDamper, AxialMotor, axis_in_body
 from core.multibody.language.forces import (
     AppliedForce,
     Damper,
@@ -80,6 +81,8 @@ def damper(connection: Damper, reader: Reader, name: str, path: Path) -> Definit
         a, b = ends_of(connection, reader, path)
         return spring_by_law(Spring(connection.a, connection.b, law=connection.law), reader, name, a, b, path)
     coefficient = reader.number(connection.coefficient, (*path, "coefficient"))
+    if connection.measure == "turn" and reader.dimension == 3:
+        return AxialDamper(name, *axis_in_body(connection, reader), coefficient)
     if connection.measure == "turn":
         return TurnDamper(name, *_turning(connection), coefficient)
     a, b = ends_of(connection, reader, path)
@@ -89,6 +92,9 @@ def damper(connection: Damper, reader: Reader, name: str, path: Path) -> Definit
 @definition_of.register
 def motor(connection: Motor, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a motor."""
+    if reader.dimension == 3:
+        rate = value_or_formula(reader, connection.rate, {}, (*path, "rate"))
+        return AxialMotor(name, *axis_in_body(connection, reader), rate)
     if connection.drive is not None:
         drive = value_or_formula(reader, connection.drive, {}, (*path, "drive"))
         return DrivenTurn(name, *_turning(connection), drive)

@@ -11,7 +11,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.chosen_times import quickness
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import Ledger
-from core.multibody.audit.laws_at_samples import MeasureValues
+from core.multibody.audit.laws_at_samples import ANGULAR, MeasureValues
 from core.multibody.audit.newton import Acceleration, Freedoms
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, Undefined, cross, turned
 from core.multibody.audit.samples import ATTITUDE, POSITION, Samples, axis_of_top
@@ -165,8 +165,10 @@ class AfterStart:
             connection, arm = own.connection, own.connection.arm + own.connection.reach
             angular = [self.gains[name].angular for name in connection.bodies]
             turning = max((float(np.abs(gain).max()) for gain in angular if gain is not None), default=0.0)
-            terms = self.steepest + self.rate * self.fastest + arm * turning + arm * self.rate**2
             for key, value in own.held.items():
+                # What is held of an attitude has the size of a direction, whatever the places.
+                size = max(1.0, arm) if key in ANGULAR else arm
+                terms = self.steepest + self.rate * self.fastest + size * (turning + self.rate**2)
                 gain = (value[first].imag - value[first + 1].imag) / STEP / (2.0 * self.step)
                 off, allowed = np.abs(gain).reshape(1, -1).max(axis=1), (ACCELERATION_KNOWN + ledger.rounding) * terms
                 law = f"{key} held by the accelerations"

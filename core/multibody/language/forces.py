@@ -87,7 +87,7 @@ class Damper(TwoEnded):
         """See `Connection.aspects`."""
         if self.measure != "turn":
             return ()
-        return [(self.a, "turn"), (self.b, "turn")]
+        return [(end, "turn" if surroundings.plane else "orientation") for end in (self.a, self.b)]
 
     def formulas(self) -> Iterable[object]:
         """See `Connection.formulas`."""
@@ -96,9 +96,9 @@ class Damper(TwoEnded):
 
 @dataclass(frozen=True)
 class Motor(TwoEnded):
-    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), or by a `drive` (rad), in the plane.
+    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), or in the plane by a `drive` (rad).
 
-    Both may be formulas of time.
+    Both may be formulas of time. In space it turns about the axis of the pin that joins the two.
     """
 
     a: str
@@ -110,7 +110,7 @@ class Motor(TwoEnded):
 
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""
-        return [(self.a, "turn"), (self.b, "turn")]
+        return [(end, "turn" if surroundings.plane else "orientation") for end in (self.a, self.b)]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from core.errors import Path
 from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, carrier_of
-from core.multibody.language.written import Number, Place, Vector
+from core.multibody.language.written import GROUND, Number, Place, Vector
 
 
 @dataclass(frozen=True)
@@ -152,3 +153,21 @@ class Relation(Connection):
     def formulas(self) -> Iterable[object]:
         """See `Connection.formulas`."""
         return (self.of, self.equals)
+
+
+def axis_of_turn(connections: Iterable[tuple[int, Connection]], a: str, b: str) -> tuple[Vector, Path] | None:
+    """Return the axis about which body `a` turns relative to another, as it was written, and its path; None without.
+
+    Parameters
+    ----------
+    connections : iterable of (int, Connection)
+        Each with its number in the description.
+    a, b : str
+        Of the bodies; the ground is one.
+    """
+    for i, one in connections:
+        if isinstance(one, (Pin, Cylindrical)) and one.axis is not None:
+            ends = {end.partition(".")[0] if isinstance(end, str) else GROUND for end in (one.a, one.b)}
+            if ends == {a, b}:
+                return one.axis, ("connections", i, "axis")
+    return None

@@ -35,6 +35,7 @@ from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.moving_places import place_of
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.rows import add_rows
+from core.multibody.table.turns_in_space import turn_in_space
 
 
 @add_rows.register
@@ -80,7 +81,9 @@ def spring(connection: Spring, measures: Measures, name: str, path: Path) -> Non
 def torsion_spring(connection: TorsionSpring, measures: Measures, name: str, path: Path) -> None:
     """Add a linear spring between two turns: energy k (angle - rest)^2/2."""
     k = _positive(measures, connection.stiffness, (*path, "stiffness"))
-    turn = _turn(measures, connection, path)
+    if measures.dimension == 3:
+        raise InvalidParameter((*path, "kind"), "be another one in space, such as spring")
+    turn = _turn(measures, connection, name, path)
     if connection.rest_angle is None:
         rest = evaluated(turn, measures.table.q)
     else:
@@ -95,12 +98,14 @@ def torsion_spring(connection: TorsionSpring, measures: Measures, name: str, pat
 def damper(connection: Damper, measures: Measures, name: str, path: Path) -> None:
     """Add a force against the rate of a distance or of a turn."""
     if connection.measure == "turn":
-        measured, unit = _turn(measures, connection, path), "N m"
+        measured, unit = _turn(measures, connection, name, path), "N m"
     elif connection.measure == "length":
         a, b = _ends(measures, connection, path)
         measured, unit = coordinate(measures.length(name, a, b, path)), "N"
     else:
         raise InvalidParameter((*path, "measure"), 'be "length" or "turn"')
+    if connection.law is not None and measures.dimension == 3 and unit == "N m":
+        raise InvalidParameter((*path, "law"), "be a coefficient for a turn in space")
     if connection.law is not None:
         damper_by_law(connection, measures, name, measured, unit, path)
         return
@@ -118,9 +123,11 @@ def damper(connection: Damper, measures: Measures, name: str, path: Path) -> Non
 @add_rows.register
 def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
     """Hold the rate of a turn, or the turn itself, which may be formulas of time."""
-    turn = _turn(measures, connection, path)
+    turn = _turn(measures, connection, name, path)
     if (connection.rate is None) == (connection.drive is None):
         raise InvalidParameter(path, "have a rate or a drive")
+    if connection.drive is not None and measures.dimension == 3:
+        raise InvalidParameter((*path, "drive"), "be left out in space, where a motor has a rate")
     if connection.drive is not None:
         drive = driven(measures, name, connection.drive, (*path, "drive"))
         apart = evaluated(difference(turn, drive), measures.table.q)
@@ -215,9 +222,11 @@ def _positive(measures: Measures, value: object, path: Path) -> Ball:
     return number
 
 
-def _turn(measures: Measures, connection: TwoEnded, path: Path) -> Poly:
+def _turn(measures: Measures, connection: TwoEnded, name: str, path: Path) -> Poly:
     if connection.a == connection.b:
         raise InvalidParameter((*path, "b"), "be another body than a")
+    if measures.dimension == 3:
+        return turn_in_space(measures, name, connection, path)
     turn = measures.coordinates.turn_of
     return difference(turn(connection.a, (*path, "a")), turn(connection.b, (*path, "b")))
 
