@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 
 from core.formulas import Node
 from core.multibody.equations_answer import WrittenFormula
-from core.multibody.formulation.formula_nodes import is_short
+from core.multibody.formulation.formula_nodes import digits_of, is_short
 from core.multibody.formulation.notation.latex import latex
 from core.multibody.formulation.notation.mathml import mathml
 from core.multibody.formulation.notation.plain import plain
@@ -44,8 +44,10 @@ class Constants:
         return {**others, **{name: float(digits) for digits, name in self._named.items()}}
 
     def _with_names(self, node: Node) -> Node:
-        if node.kind == "number" and not is_short(node.text):
-            return Node("name", self._name(node.text))
+        if node.kind == "number":
+            # Of a client's formula, which may have any digits.
+            text = digits_of(float(node.text))
+            return Node("number", text) if is_short(text) else Node("name", self._name(text))
         return Node(node.kind, node.text, tuple(self._with_names(inner) for inner in node.inner))
 
     def _name(self, digits: str) -> str:

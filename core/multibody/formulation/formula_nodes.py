@@ -34,7 +34,7 @@ def is_short(text: str) -> bool:
 
 def number(value: Ball) -> Node:
     """Return a positive number."""
-    text = _digits(float(value))
+    text = digits_of(float(value))
     if not is_short(text):
         for below in range(2, LARGEST_DENOMINATOR + 1):
             above = (value * below).unique_fmpz()
@@ -43,9 +43,9 @@ def number(value: Ball) -> Node:
     return Node("number", text)
 
 
-def _digits(value: float) -> str:
-    text = repr(value)
-    return text.removesuffix(".0")
+def digits_of(value: float) -> str:
+    """Return the digits that say a double, and no others."""
+    return repr(value).removesuffix(".0")
 
 
 def node_of_sum(total: Sum) -> Node:

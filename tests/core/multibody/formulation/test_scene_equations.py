@@ -278,3 +278,18 @@ def test_matrices_have_the_modes_of_the_places_of_rest() -> None:
         )
         compared += 1
     assert compared == 5
+
+
+def test_pieces_of_formulas_are_written_as_they_are_at_the_start() -> None:
+    """A table between its first two points, in digits of doubles."""
+    push = {"points": [[0, 1], [1, 2], [2, 0]], "interpolation": "cubic"}
+    question = {
+        "let": {"push": push},
+        "bodies": {"p": {"mass": 1, "at": [0.5, 0], "velocity": [0.3, 0]}},
+        "connections": [{"kind": "force", "place": "p", "force": ["push(t)*vx + abs(x)", 0]}],
+    }
+    scene = scene_of(question)
+    answer = answer_of(scene)
+    assert answer.equations is not None
+    assert all(len(f"{value:.17g}") <= 18 for value in answer.equations.constants.values())
+    assert {column: printed for column, printed, _ in agreed(scene, answer)}["p.x"] == pytest.approx(0.8, rel=1e-14)
