@@ -36,7 +36,7 @@ def dimension(request: Json) -> int:
 
 def turns(body: Json) -> bool:
     """Return whether a body has axes."""
-    return any(key in body for key in ("inertia", "moments", "tensor", "body"))
+    return any(key in body for key in ("inertia", "moments", "tensor", "body", "shape"))
 
 
 def in_space(place: Any, request: Json) -> bool:
