@@ -8,7 +8,7 @@ relative to the scene.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -146,6 +146,18 @@ ROUNDED = 60
 than doubles hold, and half of what pairs do."""
 
 
+KNOWN = 88
+"""Bits by which a place is less than the arms of its body where it is what rounding leaves: events are known to 92."""
+
+
+def _arms(table: Table) -> Iterator[int | None]:
+    """Yield the exponents of lengths by which rows join a turn, or a direction, to a place."""
+    for row in table.rows:
+        constant = {j: e for j, poly in row.rates.items() if (e := exponent(poly.get((), ZERO))) is not None}
+        places = [e for j, e in constant.items() if table.units[j] == "m"]
+        yield from (e - max(places) for j, e in constant.items() if places and table.units[j] in ("1", "rad"))
+
+
 def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     """Return units in which coordinates, rates and masses are of the order of one."""
     sizes = [exponent(x) for i, x in enumerate(table.q) if table.units[i] == "m"]
@@ -179,6 +191,10 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
     if size is None or (ways and size < min(ways) + AT_ORIGIN):
         size = min(ways, default=None)
+    arm = _most(_arms(table))
+    if arm is not None and size is not None and size < arm - KNOWN:
+        # A body that rests at the origin, up to rounding, is measured by the arms at which it is held.
+        size = arm
     size = 0 if size is None else size
     if rate is not None:
         times.append(size - rate)

@@ -56,7 +56,9 @@ def scene_of(seed: int) -> tuple[Json, list[float]]:
         frame = {"kind": "spinning-frame", "rate": draw.one((1, 2))}
         scene["connections"].append(frame if space else {**frame, "about": "normal"})
     if draw.chance(0.12):
-        scene["impacts"] = draw.one(LAWS)
+        law = draw.one(LAWS)
+        # In space contacts with friction follow Newton's.
+        scene["impacts"] = "newton" if space else law
     if draw.chance(0.12):
         scene["simultaneous"] = draw.one(("together", "in order"))
     later = np.random.default_rng([2026, seed, 1])

@@ -251,3 +251,23 @@ def test_a_point_in_a_hollow_sticks_and_does_not_roll(friction: float) -> None:
     body = {"mass": 1, "at": ["0.6", "-0.8"], "velocity": ["-2*0.8", "-2*0.6"]}
     hollow = {"kind": "contact", "name": "bowl", "place": "p", "on": {"at": [0, 0], "radius": -1}, "friction": friction}
     agree({"p": body}, [hollow], [0.3, 1])
+
+
+@pytest.mark.parametrize("x", [0, 0.3, 1000])
+@pytest.mark.parametrize("field", [["-sin(x) - vx*t", "-vy/3"], ["-vx*t", "-vy*t"]])
+def test_a_level_bar_that_lands_in_a_field(x: float, field: list[str]) -> None:
+    """Where it lands at the origin, rounding leaves 1e-30 m of its place: the length of the bar is its scale."""
+    bar = {"mass": 1, "inertia": "1/3", "at": [x, 0.2], "velocity": [0, 0], "angular_velocity": 0}
+    bar["places"] = {"l": [-1, 0], "r": [1, 0]}
+    acts = {"kind": "field", "name": "field", "acceleration": field}
+    agree({"bar": bar}, [*(floor(f"on-{k}", f"bar.{k}") for k in "lr"), acts], [0.1, 0.4])
+
+
+def test_a_level_table_that_lands_in_a_field() -> None:
+    legs = {f"f{k}": [0.5 * (-1) ** k, 0.3 * (-1) ** (k // 2), 0] for k in range(4)}
+    table = {"mass": 10, "moments": [1, 1.5, 2], "at": [0, 0, 0.2], "velocity": [0, 0, 0], "places": legs}
+    table["angular_velocity"] = [0, 0, 0]
+    on = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    contacts = [{"kind": "contact", "name": k, "place": f"t.{k}", "on": on} for k in legs]
+    field = {"kind": "field", "name": "field", "acceleration": ["-sin(x) - vx*t", "-y", "-vz/3"]}
+    agree({"t": table}, [*contacts, field], [0.1, 0.4], [0, 0, -10])
