@@ -135,7 +135,8 @@ def _compare(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
     verdict.compared += len(plain)
     if ended is not None and ended[1] < until:
         right = first.ended
-        close = right is not None and abs(right.time - ended[1]) <= max(1e-7, 1e-6 * ended[1])
+        apart = 0.0 if right is None or moved.ended is None else GROWN * abs(right.time - moved.ended.time)
+        close = right is not None and abs(right.time - ended[1]) <= max(1e-7, 1e-6 * ended[1], apart)
         if right is None or not close or right.kind != ended[0]:
             shown = "goes on" if right is None else f"{right.kind} {right.time:.12g}"
             verdict.differences.append(Difference("end", ended[0], shown, f"{ended[0]} {ended[1]:.12g}"))
