@@ -191,7 +191,7 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
     if size is None or (ways and size < min(ways) + AT_ORIGIN):
         size = min(ways, default=None)
-    arm = _most(_arms(table))
+    arm = _most(list(_arms(table)))
     if arm is not None and size is not None and size < arm - KNOWN:
         # A body that rests at the origin, up to rounding, is measured by the arms at which it is held.
         size = arm
