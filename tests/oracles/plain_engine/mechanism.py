@@ -25,7 +25,7 @@ from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 _STENCIL = np.array([4.0, 3.0, 2.0, 1.0, -1.0, -2.0, -3.0, -4.0])
 _WEIGHTS = np.array([-1 / 280, 4 / 105, -1 / 5, 4 / 5, -4 / 5, 1 / 5, -4 / 105, 1 / 280])
 """Central difference of eighth order for a first derivative (B. Fornberg, Math. Comp. 51 (1988) 699, table 1)."""
-REACH = 2.0**-10
+REACH = 2.0**-9
 """Part of the shortest length and of a radian by which the innermost places of the stencil are moved: rounding is some
 1e-13 of the rates, and the truncated term nothing beside it. Where the outline of a shape bends, it reaches across."""
 MOST_SPENT = 12000
