@@ -110,9 +110,16 @@ class Chart:
         """Return whether a coordinate of the table is still a variable of its own."""
         return self.places[i] == Sum.variable(self.symbols[i])
 
-    def _replace(self, name: str, value: Sum) -> None:
+    def _admit(self, name: str, value: Sum) -> bool:
+        return all(place.admits(name, value) for place in self.places)
+
+    def _replaces(self, name: str, value: Sum) -> bool:
+        """Replace a variable where all places admit that, and return whether they do."""
+        if not self._admit(name, value):
+            return False
         self.places = [place.replaced(name, value) if name in place.names() else place for place in self.places]
         del self.start[name], self.rates[name]
+        return True
 
     def _gives(self, row: Row, value: Sum) -> bool:
         """Solve a measure for a variable in which it is linear."""
@@ -122,10 +129,8 @@ class Chart:
             if not self._free(i) or alone not in value.terms:
                 continue
             rest = value - Sum({alone: value.terms[alone]})
-            elsewhere = any(name in place.in_waves() for place in self.places)
-            if name in rest.names() or (elsewhere and rest.affine() is None):
+            if name in rest.names() or not self._replaces(name, rest.times(-1 / value.terms[alone])):
                 continue
-            self._replace(name, rest.times(-1 / value.terms[alone]))
             self.steps.append(f"{row.name}: {name} follows from the others")
             return True
         return False
@@ -136,7 +141,7 @@ class Chart:
             return False
         squares: dict[float, list[int]] = {}
         for key, value in measure.items():
-            if len(key) == 2 and key[0] == key[1] and self._free(key[0]):
+            if len(key) == 2 and key[0] == key[1] and self._free(key[0]) and self._may_turn(key[0]):
                 squares.setdefault(float(value), []).append(key[0])
         for among in sorted(squares.values(), key=len, reverse=True):
             for chosen in _groups(among):
@@ -145,6 +150,10 @@ class Chart:
                     self._take_angles(row, chosen, *found)
                     return True
         return False
+
+    def _may_turn(self, i: int) -> bool:
+        """Return whether a coordinate can be replaced by a sum with sines."""
+        return self._admit(self.symbols[i], Sum.sine(self.symbols[i]))
 
     def _ties(self, row: Row, chosen: list[int]) -> bool:
         """Return whether another measure holds an axis to others, as those of a body, whose angles say little."""
@@ -201,7 +210,8 @@ class Chart:
             names.append(about)
         for i, arm, way in zip(chosen, arms, ways, strict=True):
             centre = Sum.of(combined((ONE, arm), (-ONE, {(i,): ONE})), self.places)
-            self._replace(self.symbols[i], length * way - centre)
+            replaced = self._replaces(self.symbols[i], length * way - centre)
+            assert replaced, "what goes round admits sines"
         self.rounds.append(Round(arms, radius, names, heading))
         held = " and ".join(self.symbols[i] for i in chosen)
         enough = "circle: an angle suffices" if len(chosen) == 2 else "sphere: two angles suffice"
@@ -231,12 +241,10 @@ class Chart:
         if product is None or set(measure) != {product, ()}:
             return False
         for i, j in sorted((product, product[::-1]), key=lambda pair: self.table.units[pair[0]] != "1/m"):
-            other = self.places[j].terms
-            apart = self.symbols[i] not in self.places[j].names()
-            if apart and self._free(i) and len(other) == 1 and not next(iter(other)).function:
-                (term, value) = next(iter(other.items()))
-                inverse = Term(tuple((variable, -power) for variable, power in term.factors))
-                self._replace(self.symbols[i], Sum({inverse: -measure[()] / measure[product] / value}))
+            inverse = self.places[j].inverse()
+            if inverse is None or not self._free(i) or self.symbols[i] in inverse.names():
+                continue
+            if self._replaces(self.symbols[i], inverse.times(-measure[()] / measure[product])):
                 return True
         return False
 
@@ -251,16 +259,17 @@ class Chart:
         factors, constant = known
         waves = {name for place in self.places for name in place.in_waves()}
         units = dict(zip(self.symbols, self.table.units, strict=True))
-        name = min(factors, key=lambda one: (units.get(one) != "s", one in waves, one not in units))
-        lead = factors[name]
-        slopes = {other: -x / lead for other, x in factors.items() if other != name}
-        # Of the times themselves the sum is -constant / lead.
-        offset = self.start[name] - sum((x * self.start[other] for other, x in slopes.items()), ZERO)
-        parts = [Sum.variable(other).times(x) for other, x in slopes.items()]
-        self._replace(name, added([*parts, Sum.variable(TIME).times(-constant / lead), Sum.number(offset)]))
-        if units.get(name) != "s":
-            self.steps.append(f"{row.name}: {name} goes in constant proportion with the others")
-        return True
+        for name in sorted(factors, key=lambda one: (units.get(one) != "s", one in waves, one not in units)):
+            lead = factors[name]
+            slopes = {other: -x / lead for other, x in factors.items() if other != name}
+            # Of the times themselves the sum is -constant / lead.
+            offset = self.start[name] - sum((x * self.start[other] for other, x in slopes.items()), ZERO)
+            parts = [Sum.variable(other).times(x) for other, x in slopes.items()]
+            if self._replaces(name, added([*parts, Sum.variable(TIME).times(-constant / lead), Sum.number(offset)])):
+                if units.get(name) != "s":
+                    self.steps.append(f"{row.name}: {name} goes in constant proportion with the others")
+                return True
+        return False
 
     def rates_of(self, row: Row) -> Sum:
         """Return what a row says of the rates, which is zero."""

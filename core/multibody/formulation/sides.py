@@ -8,7 +8,7 @@ from core.formulas import Node
 from core.multibody.algebra.polynomials import ONE, Ball
 from core.multibody.algebra.rank import Elimination
 from core.multibody.formulation.formula_nodes import Terms, node_of_sum, node_of_terms, variable_node
-from core.multibody.formulation.trigonometric_sums import Sum, Term, Variable, added
+from core.multibody.formulation.trigonometric_sums import Sum, Variable, added
 
 Sides = tuple[Node, Node]
 """The two sides of an equation."""
@@ -46,11 +46,10 @@ def constant_accelerations(equations: Mapping[str, Sum]) -> dict[str, Ball] | No
 
 def _sides(name: str, equation: Sum, order: int) -> Sides:
     leading = _leading(equation, name, order)
-    if len(leading) == 1 and len(leading[0][1].terms) == 1:
+    if len(leading) == 1:
         # What multiplies the only acceleration divides the rest, if it is a power.
-        term, value = next(iter(leading[0][1].terms.items()))
-        if not term.function:
-            inverse = Sum({Term(tuple((variable, -power) for variable, power in term.factors)): 1 / value})
+        inverse = leading[0][1].inverse()
+        if inverse is not None:
             equation = equation * inverse
             leading = _leading(equation, name, order)
     rest = equation - added(factor * Sum.variable(*variable) for variable, factor in leading)

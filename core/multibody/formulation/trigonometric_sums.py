@@ -146,17 +146,34 @@ class Sum:
             parts.append(slope * Sum.variable(variable.name, variable.order + 1) if moving else slope)
         return added(parts)
 
+    def inverse(self) -> Sum | None:
+        """Return the inverse of a product of powers, None of another sum."""
+        if len(self.terms) != 1:
+            return None
+        ((term, value),) = self.terms.items()
+        if term.function:
+            return None
+        return Sum({Term(tuple((variable, -power) for variable, power in term.factors)): 1 / value})
+
+    def admits(self, name: str, value: Sum) -> bool:
+        """Return whether a variable can be replaced: inside of sines by an affine sum, as a divisor by a product."""
+        divides = any(at == Variable(name) and power < 0 for term in self.terms for at, power in term.factors)
+        turns = name in self.in_waves()
+        return not (divides and value.inverse() is None) and not (turns and value.affine() is None)
+
     def replaced(self, name: str, value: Sum) -> Sum:
-        """Return the sum with a variable replaced, whose derivatives do not occur; inside of sines by an affine sum."""
-        parts = []
+        """Return the sum with a variable replaced, whose derivatives do not occur, by a sum that it admits."""
+        parts, inverse = [], value.inverse()
         for term, factor in self.terms.items():
             power = dict(term.factors).get(Variable(name), 0)
             slope = dict(term.wave).get(name, 0.0)
             rest = tuple(entry for entry in term.factors if entry[0] != Variable(name))
             wave = tuple(entry for entry in term.wave if entry[0] != name)
             part = Sum({Term(rest): factor})
-            for _ in range(power):
-                part = part * value
+            factor_of_each = value if power >= 0 else inverse
+            assert factor_of_each is not None, "a divisor is replaced by a product of powers"
+            for _ in range(abs(power)):
+                part = part * factor_of_each
             if term.function:
                 part = part * _turned(term.function, wave, slope, value)
             parts.append(part)

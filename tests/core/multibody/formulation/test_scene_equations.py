@@ -158,6 +158,47 @@ def test_the_same_places_on_two_circles_are_solved_once() -> None:
             assert abs(printed - value) <= AGREED * 10.0, (column, printed, value)
 
 
+RELATIONS: dict[str, tuple[list[float], list[tuple[str, str | int]]]] = {
+    "a divisor that is a square": ([0.4, -0.4, 0.2], [("p.y", "1/p.x"), ("p.x", "p.z^2")]),
+    "a divisor that is a sum": ([0.3, -0.3, 0.2], [("p.y", "1/p.x"), ("p.x", "(p.z^2 + p.z)/2")]),
+    "a divisor on a circle": ([0.4, -0.4, -0.4], [("p.y", "1/p.x"), ("p.x^2 + p.z^2", 2)]),
+    "a divisor on a line": ([0.4, -0.4, -0.4], [("p.y", "1/p.x"), ("p.x", "2 - p.z")]),
+    "a divisor of two factors": ([0.4, -0.6, 0.2], [("p.y", "1/(p.x*p.z)"), ("p.x", "p.z^2")]),
+    "the square of a divisor": ([0.4, -0.8, 0.2], [("p.y", "1/p.x^2"), ("p.x", "p.z^2")]),
+    "a divisor that is a divisor": ([0.4, -0.4, -0.4], [("p.y", "1/p.x"), ("p.x", "1/p.z")]),
+}
+"""Velocities of a point at [1, 1, 1], and the relations that hold it to a curve."""
+
+
+@pytest.mark.parametrize("turned_round", [False, True])
+@pytest.mark.parametrize("name", RELATIONS)
+def test_relations_in_any_order_have_the_same_accelerations(name: str, turned_round: bool) -> None:
+    velocity, relations = RELATIONS[name]
+    rows = [{"kind": "relation", "name": f"r{k}", "of": of, "equals": to} for k, (of, to) in enumerate(relations)]
+    twin = {"kind": "rod", "a": "q", "b": [9, 0, 0]}
+    bodies = {
+        "p": {"mass": 1, "at": [1, 1, 1], "velocity": velocity},
+        "q": {"mass": 2, "at": [9, 0.6, 0.8], "velocity": [1, 0, 0]},
+    }
+    connections = [*rows, twin][:: -1 if turned_round else 1]
+    scene = scene_of({"gravity": [0, -10, 0], "bodies": bodies, "connections": connections})
+    compared = list(agreed(scene, answer_of(scene)))
+    assert {column for column, _, _ in compared} >= {"p.x", "p.y", "p.z", "q.y", "q.z"}
+    for column, printed, value in compared:
+        assert abs(printed - value) <= AGREED * 10.0, (column, printed, value)
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_the_order_of_connections_changes_no_acceleration(name: str) -> None:
+    question = scene_catalogue()[name].question
+    scene = scene_of({**question, "connections": question.get("connections", [])[::-1]})
+    compared = list(agreed(scene, answer_of(scene)))
+    assert compared
+    size = max(abs(value) for _, _, value in compared)
+    for column, printed, value in compared:
+        assert abs(printed - value) <= AGREED * size, (column, printed, value)
+
+
 def test_constants_keep_out_of_the_way_of_time_and_multipliers() -> None:
     """A force of -3 x by constants called t and lambda_1, beside a row that has a multiplier."""
     drive = {"kind": "force", "place": "p", "force": ["-t*lambda_1*x*cos(c1*0)", "0*vx"]}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import mpmath
 import pytest
 from flint import arb
@@ -9,18 +11,18 @@ from flint import arb
 from core.multibody.algebra.polynomials import ONE
 from core.multibody.formulation.trigonometric_sums import TIME, Sum, Variable, added
 
-VALUES = {"x": 0.7, "y": -1.3, "a": 0.4, "b": 2.1, TIME: 0.25}
-RATES = {"x": 0.3, "y": 1.1, "a": -0.6, "b": 0.9, TIME: 1.0}
+VALUES = {"x": 0.7, "y": -1.3, "z": 0.6, "a": 0.4, "b": 2.1, TIME: 0.25}
+RATES = {"x": 0.3, "y": 1.1, "z": 0.2, "a": -0.6, "b": 0.9, TIME: 1.0}
 
 
-def value(total: Sum) -> float:
+def value(total: Sum, values: Mapping[str, float] = VALUES) -> float:
     """Return the value of a sum by its terms."""
     found = mpmath.mpf(0)
     for term, factor in total.terms.items():
         part = mpmath.mpf(float(factor))
         for variable, power in term.factors:
-            part *= (VALUES, RATES)[variable.order][variable.name] ** power
-        angle = mpmath.fsum(x * VALUES[name] for name, x in term.wave)
+            part *= (values, RATES)[variable.order][variable.name] ** power
+        angle = mpmath.fsum(x * values[name] for name, x in term.wave)
         found += part * {"": mpmath.mpf(1), "cos": mpmath.cos(angle), "sin": mpmath.sin(angle)}[term.function]
     return float(found)
 
@@ -59,6 +61,39 @@ def test_a_variable_inside_of_sines_is_replaced_by_what_is_affine() -> None:
     for total, function in ((SA, mpmath.sin), (CA, mpmath.cos)):
         assert value(total.replaced("a", moved)) == pytest.approx(float(function(angle)), rel=1e-14)
     assert value((X * X + SA).replaced("x", Y)) == pytest.approx(VALUES["y"] ** 2 + value(SA), rel=1e-14)
+
+
+INVERSE, CUBED = Sum.variable("x", power=-1), Sum.variable("x", power=-3)
+
+
+@pytest.mark.parametrize("total", [INVERSE, CUBED * Y + X * X, CUBED * SA + INVERSE, INVERSE * Y * Y])
+@pytest.mark.parametrize("new", [Y, Y * Y, (Y * Sum.variable("z", power=-2)).times(arb("-1.5")), Sum.number(arb(4))])
+def test_a_divisor_is_replaced_by_a_product_of_powers(total: Sum, new: Sum) -> None:
+    inside = {**VALUES, "x": value(new)}
+    assert total.admits("x", new)
+    assert value(total.replaced("x", new)) == pytest.approx(value(total, inside), rel=1e-14)
+
+
+@pytest.mark.parametrize("new", [Y + Sum.number(ONE), SA, Y * CB, Sum()])
+def test_a_divisor_admits_nothing_else(new: Sum) -> None:
+    assert new.inverse() is None
+    assert not INVERSE.admits("x", new)
+    assert X.admits("x", new)
+    with pytest.raises(AssertionError, match="divisor"):
+        INVERSE.replaced("x", new)
+
+
+def test_what_turns_admits_affine_sums_alone() -> None:
+    assert SA.admits("a", X + Sum.number(ONE))
+    assert not SA.admits("a", X * X)
+    assert SA.admits("b", X * X)
+
+
+def test_inverses() -> None:
+    product = (X * X * INVERSE * Y).times(arb(-4))
+    inverse = product.inverse()
+    assert inverse is not None
+    assert (product * inverse).constant() == 1
 
 
 def test_partial_derivatives() -> None:
