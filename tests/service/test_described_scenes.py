@@ -170,6 +170,7 @@ HOSTILE: dict[str, tuple[Any, str]] = {
     "an unknown body": (of_rod(a="q"), "/connections/0/a"),
     "an unknown place": (of_rod(a="p.end"), "/connections/0/a"),
     "a connection to itself": (of_rod(b="p"), "/connections/0"),
+    "a length in seconds": (of_rod(length={"value": 1, "unit": "s"}), "/connections/0/length/unit"),
     "nested degrees": (of_point(mass={"degrees": {"degrees": 1}}), "/bodies/p/mass/degrees"),
     "slips that are no names": (
         PENDULUM | {"connections": [{"kind": "string", "through": [[0, 0], "p"], "slips": [["p"]]}]},

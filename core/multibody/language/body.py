@@ -5,10 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 from core.bodies import Body
-from core.multibody.language.written import Number, Vector
+from core.multibody.language.declared_units import Measured, Members, Named
+from core.multibody.language.written import Angle, Direction, Length, Number, Vector
+
+SIZES = ("at", "corners", "depth", "height", "length", "radius", "semi_axes", "width")
+"""Members of a shape that are lengths."""
+
+MOMENT_OF_INERTIA = Measured("kg m^2")
+"""The unit of moments of inertia."""
 
 
 @dataclass(frozen=True)
@@ -52,19 +59,19 @@ class SceneBody:
         Points of the body, in body axes from its centre of mass (m).
     """
 
-    at: Vector
-    mass: Number | None = None
-    velocity: Vector | None = None
-    inertia: Number | None = None
-    moments: Vector | None = None
-    tensor: Sequence[Vector] | None = None
+    at: Annotated[Vector, Measured("m")]
+    mass: Annotated[Number, Measured("kg")] | None = None
+    velocity: Annotated[Vector, Measured("m/s")] | None = None
+    inertia: Annotated[Number, MOMENT_OF_INERTIA] | None = None
+    moments: Annotated[Vector, MOMENT_OF_INERTIA] | None = None
+    tensor: Sequence[Annotated[Vector, MOMENT_OF_INERTIA]] | None = None
     body: Body | None = None
-    radius: Number | None = None
-    shape: Mapping[str, Any] | None = None
-    angle: Number | None = None
-    axes: Sequence[Vector] | None = None
-    angular_velocity: Number | Vector | None = None
-    places: Mapping[str, Vector] = field(default_factory=lambda: MappingProxyType({}))
+    radius: Length | None = None
+    shape: Annotated[Mapping[str, Any], Members(dict.fromkeys(SIZES, "m"))] | None = None
+    angle: Angle | None = None
+    axes: Sequence[Direction] | None = None
+    angular_velocity: Annotated[Number | Vector, Measured("rad/s")] | None = None
+    places: Annotated[Mapping[str, Vector], Named("m")] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def rigid(self) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, carrier_of
-from core.multibody.language.written import Number, Place
+from core.multibody.language.written import Angle, Place, Ratio, Surface
 
 ImpactLaw = Literal["newton", "poisson", "stronge"]
 """Law of impact: restitution by the rates of the gap, by the impulse, or by the work along the gap."""
@@ -21,7 +21,7 @@ class SurfaceConnection(Connection):
     """What touches a surface of the ground or of a body: `place` touches `on`, or `a` touches `b`."""
 
     place: Place | None
-    on: Mapping[str, Any] | None
+    on: Surface | None
     a: Place | None
     b: Place | None
 
@@ -54,7 +54,7 @@ class Rolling(SurfaceConnection):
     """A rim rolls without slip: `place` on a face or circle `on`, or body `a` on body `b`, or `inside` it."""
 
     place: str | None = None
-    on: Mapping[str, Any] | None = None
+    on: Surface | None = None
     a: str | None = None
     b: str | None = None
     inside: bool = False
@@ -82,16 +82,16 @@ class Contact(SurfaceConnection):
     """
 
     place: Place | None = None
-    on: Mapping[str, Any] | None = None
+    on: Surface | None = None
     a: Place | None = None
     b: Place | None = None
     measure: Literal["gap", "turn"] = "gap"
-    at_least: Number | None = None
-    at_most: Number | None = None
-    friction: Number | Sequence[Number] | None = None
-    restitution: Number | None = None
-    tangential_restitution: Number | None = None
-    order: Number | None = None
+    at_least: Angle | None = None
+    at_most: Angle | None = None
+    friction: Ratio | Sequence[Ratio] | None = None
+    restitution: Ratio | None = None
+    tangential_restitution: Ratio | None = None
+    order: Ratio | None = None
     impacts: ImpactLaw | None = None
     name: str | None = None
     kind: ClassVar[str] = "contact"

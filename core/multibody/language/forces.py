@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, listed
-from core.multibody.language.written import GROUND, Number, Place, Vector
+from core.multibody.language.declared_units import Measured
+from core.multibody.language.written import GROUND, Acceleration, Angle, Length, Number, Place, Vector
+
+AngularRate = Annotated[Number, Measured("rad/s")]
+"""A number in radians per second."""
+
+Force = Annotated[Vector, Measured("N")]
+"""A vector in newtons."""
 
 
 @dataclass(frozen=True)
@@ -19,8 +26,8 @@ class Spring(TwoEnded):
 
     a: Place
     b: Place
-    stiffness: Number | None = None
-    rest_length: Number | None = None
+    stiffness: Annotated[Number, Measured("N/m")] | None = None
+    rest_length: Length | None = None
     law: str | None = None
     name: str | None = None
     kind: ClassVar[str] = "spring"
@@ -35,9 +42,9 @@ class TorsionSpring(TwoEnded):
     """A linear spring between the turns of two bodies, or of one and the ground (N m/rad), in the plane."""
 
     a: str
-    stiffness: Number
+    stiffness: Annotated[Number, Measured("N m/rad")]
     b: str = GROUND
-    rest_angle: Number | None = None
+    rest_angle: Angle | None = None
     name: str | None = None
     kind: ClassVar[str] = "torsion-spring"
 
@@ -52,7 +59,7 @@ class Gravitation(TwoEnded):
 
     a: str
     b: str
-    constant: Number = "6.6743e-11"
+    constant: Annotated[Number, Measured("m^3/kg/s^2")] = "6.6743e-11"
     name: str | None = None
     kind: ClassVar[str] = "gravitation"
 
@@ -63,7 +70,7 @@ class InverseSquare(TwoEnded):
 
     a: Place
     b: Place
-    strength: Number
+    strength: Annotated[Number, Measured("N m^2")]
     name: str | None = None
     kind: ClassVar[str] = "inverse-square"
 
@@ -76,7 +83,7 @@ class Damper(TwoEnded):
     """
 
     a: Place
-    coefficient: Number | None = None
+    coefficient: Annotated[Number, Measured("N s/m", of_turn="N m s")] | None = None
     b: Place = GROUND
     measure: Literal["length", "turn"] = "length"
     law: str | None = None
@@ -102,9 +109,9 @@ class Motor(TwoEnded):
     """
 
     a: str
-    rate: Number | None = None
+    rate: AngularRate | None = None
     b: str = GROUND
-    drive: Number | None = None
+    drive: Angle | None = None
     name: str | None = None
     kind: ClassVar[str] = "motor"
 
@@ -120,8 +127,8 @@ class SpinningFrame(Connection):
     In space about the vertical through `at`. In the plane about the vertical in the plane, unless `about` is "normal".
     """
 
-    rate: Number
-    at: Vector | None = None
+    rate: AngularRate
+    at: Annotated[Vector, Measured("m")] | None = None
     about: Literal["vertical", "normal"] = "vertical"
     name: str | None = None
     kind: ClassVar[str] = "spinning-frame"
@@ -144,7 +151,7 @@ class AppliedForce(Connection):
     """
 
     place: Place
-    force: Vector
+    force: Force
     in_: Literal["body"] | None = None
     name: str | None = None
     kind: ClassVar[str] = "force"
@@ -170,7 +177,7 @@ class Torque(Connection):
     """
 
     body: str
-    torque: Number | Vector
+    torque: Annotated[Number | Vector, Measured("N m")]
     in_: Literal["body"] | None = None
     name: str | None = None
     kind: ClassVar[str] = "torque"
@@ -192,8 +199,8 @@ class Torque(Connection):
 class Field(Connection):
     """A force (N) or an acceleration (m/s^2) of every body, or of some, by numbers and formulas of its centre."""
 
-    acceleration: Vector | None = None
-    force: Vector | None = None
+    acceleration: Acceleration | None = None
+    force: Force | None = None
     on: Sequence[str] | None = None
     name: str | None = None
     kind: ClassVar[str] = "field"

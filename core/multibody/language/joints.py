@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from core.errors import Path
 from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, carrier_of
-from core.multibody.language.written import GROUND, Number, Place, Vector
+from core.multibody.language.written import GROUND, Angle, Direction, Length, Number, Place, Surface, Vector
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Pin(TwoEnded):
 
     a: Place
     b: Place
-    axis: Vector | None = None
+    axis: Direction | None = None
     name: str | None = None
     kind: ClassVar[str] = "pin"
 
@@ -60,7 +60,7 @@ class Cylindrical(TwoEnded):
 
     a: Place
     b: Place
-    axis: Vector
+    axis: Direction
     name: str | None = None
     kind: ClassVar[str] = "cylindrical"
 
@@ -78,7 +78,7 @@ class Universal(TwoEnded):
 
     a: Place
     b: Place
-    axes: Sequence[Vector]
+    axes: Sequence[Direction]
     name: str | None = None
     kind: ClassVar[str] = "universal"
 
@@ -96,9 +96,9 @@ class Slider(TwoEnded):
 
     a: Place
     b: Place
-    slope: Number | None = None
-    direction: Vector | None = None
-    drive: Number | None = None
+    slope: Angle | None = None
+    direction: Direction | None = None
+    drive: Length | None = None
     name: str | None = None
     kind: ClassVar[str] = "slider"
 
@@ -113,8 +113,8 @@ class Rod(TwoEnded):
 
     a: Place
     b: Place
-    length: Number | None = None
-    drive: Number | None = None
+    length: Length | None = None
+    drive: Length | None = None
     name: str | None = None
     kind: ClassVar[str] = "rod"
 
@@ -128,7 +128,7 @@ class GuideCurve(Connection):
     """
 
     place: Place
-    on: Mapping[str, Any]
+    on: Surface
     name: str | None = None
     kind: ClassVar[str] = "track"
 

@@ -20,7 +20,7 @@ from core.errors import InvalidParameter, Path
 from core.formulas import FUNCTIONS, LARGEST_EXPONENT, NAMES_OF_FUNCTIONS, Arithmetic, Formula, is_name, names_in
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.language.tabulated import Tabulated, is_table, tabulated
-from core.multibody.language.units import DEGREES, check_dimension, unit_of
+from core.multibody.language.units import DEGREES, unit_of
 
 MOST_DIGITS = 200
 """Digits of a number: twice as many as the precision of the set-up distinguishes."""
@@ -173,7 +173,6 @@ class Numerals:
     def _in_unit(self, value: Mapping[str, object], path: Path) -> Ball:
         """Return a number that has a unit."""
         unit = unit_of(value["unit"], (*path, "unit"))
-        check_dimension(unit, str(value["unit"]), path)
         if isinstance(value["value"], Mapping):
             raise InvalidParameter((*path, "value"), "be a number or a formula")
         return self.number(value["value"], (*path, "value")) * unit.factor

@@ -17,10 +17,12 @@ from core.formulas import names_in
 from core.multibody.language.body import SceneBody
 from core.multibody.language.connection import Connection
 from core.multibody.language.contacts import ImpactLaw, Simultaneous
+from core.multibody.language.declared_units import check_units
+from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.numerals import LONGEST_NAME, NAME, member
 from core.multibody.language.switches import SWITCHING
 from core.multibody.language.tabulated import is_table
-from core.multibody.language.written import GROUND, Number, Vector
+from core.multibody.language.written import GROUND, Acceleration, Number
 from core.near_names import did_you_mean
 
 MOST_BODIES = 100
@@ -64,7 +66,7 @@ class Scene:
 
     bodies: Mapping[str, SceneBody]
     connections: Sequence[Connection] = ()
-    gravity: Vector | None = None
+    gravity: Acceleration | None = None
     let: Mapping[str, Number] = field(default_factory=lambda: MappingProxyType({}))
     numbers: Literal["decimals", "doubles"] = "decimals"
     assemble: Literal["nearest"] | Mapping[str, Sequence[str]] | None = None
@@ -93,6 +95,12 @@ class Scene:
             if not isinstance(connection, Connection):
                 raise InvalidParameter(("connections", i), "be a connection")
         self.names()
+        faults = FaultsOfParts()
+        parts = [((), self), *((("bodies", name), body) for name, body in self.bodies.items())]
+        for path, part in [*parts, *((("connections", i), one) for i, one in self.numbered())]:
+            with faults.part():
+                check_units(part, path)
+        faults.raised()
 
     def numbered(self) -> Iterable[tuple[int, Connection]]:
         """Return the connections, each with its number in the description."""

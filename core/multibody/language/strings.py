@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from core.multibody.language.connection import Aspect, Connection, Surroundings, listed
-from core.multibody.language.written import Number, Place
+from core.multibody.language.declared_units import Measured
+from core.multibody.language.written import Length, Number, Place, Ratio
 
 
 @dataclass(frozen=True)
@@ -24,11 +25,11 @@ class String(Connection):
     through: Sequence[Place]
     sides: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     slips: Sequence[str] = ()
-    length: Number | None = None
-    restitution: Number | None = None
-    order: Number | None = None
-    friction: Number | Sequence[Number] | None = None
-    turns: Number | None = None
+    length: Length | None = None
+    restitution: Ratio | None = None
+    order: Ratio | None = None
+    friction: Ratio | Sequence[Ratio] | None = None
+    turns: Ratio | None = None
     name: str | None = None
     kind: ClassVar[str] = "string"
 
@@ -57,8 +58,8 @@ class Chain(Connection):
     """
 
     through: Sequence[Place]
-    density: Number
-    length: Number | None = None
+    density: Annotated[Number, Measured("kg/m")]
+    length: Length | None = None
     name: str | None = None
     kind: ClassVar[str] = "chain"
 

@@ -7,10 +7,9 @@ units convert in doubles.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from types import MappingProxyType
 from typing import Any
 
 from flint import arb, fmpq
@@ -52,25 +51,6 @@ DEGREES = ("deg", "°")
 """Names of the unit in which cosines of simple angles are exact."""
 
 _FACTOR = re.compile(r"\s*([*/·]?)\s*([A-Za-zµμ°%]+|1)(?:(?:\^|\*\*)\(?(-?[1-9])\)?)?")
-
-Expected = tuple[str, ...]
-"""Units that the number of a field may have, as they are written in what is refused."""
-
-_FIELDS: Mapping[str, Expected] = MappingProxyType(
-    {
-        **dict.fromkeys(("at", "places", "radius", "length", "width", "height", "depth", "corners"), ("m",)),
-        **dict.fromkeys(("semi_axes", "rest_length"), ("m",)),
-        **dict.fromkeys(("inertia", "moments", "tensor"), ("kg m^2",)),
-        **dict.fromkeys(("angle", "slope", "rest_angle", "degrees"), ("rad",)),
-        **dict.fromkeys(("gravity", "acceleration"), ("m/s^2",)),
-        **dict.fromkeys(("friction", "restitution", "axis", "axes", "direction", "normal"), ("1",)),
-        **{"mass": ("kg",), "velocity": ("m/s",), "angular_velocity": ("rad/s",), "rate": ("rad/s",)},
-        **{"force": ("N",), "torque": ("N m",), "stiffness": ("N/m", "N m/rad"), "coefficient": ("N s/m", "N m s")},
-        **{"strength": ("N m^2",), "constant": ("m^3/kg/s^2",), "density": ("kg/m",), "curvature": ("1/m",)},
-        **{"drive": ("m", "rad"), "at_least": ("m", "rad"), "at_most": ("m", "rad")},
-    }
-)
-"""Of the fields of a description; those that are not here may have any."""
 
 
 @dataclass(frozen=True)
@@ -139,11 +119,3 @@ def _known() -> Mapping[str, Unit]:
             above, _, below = text.partition("/")
             found[name] = Unit(fmpq(int(above), int(below or 1)), turns, dimension)
     return found
-
-
-def check_dimension(unit: Unit, text: str, path: Path) -> None:
-    """Raise `InvalidParameter` for a unit that the field at a path cannot have."""
-    field = next((key for key in reversed(path) if isinstance(key, str) and key in _FIELDS), None)
-    expected: Sequence[str] = () if field is None or path[0] == "let" else _FIELDS[field]
-    if expected and all(unit_of(one, path).dimension != unit.dimension for one in expected):
-        raise InvalidParameter((*path, "unit"), f'be a unit of {" or ".join(expected)}, unlike "{text}"')
