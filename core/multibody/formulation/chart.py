@@ -14,6 +14,7 @@ from flint import arb
 
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, degree, entry, evaluated, is_zero
 from core.multibody.formulation.trigonometric_sums import TIME, Sum, Term, Variable, added
+from core.multibody.formulation.unused_names import unused
 from core.multibody.table.table import Row, Table
 
 HORIZONTAL = 0.99
@@ -56,7 +57,7 @@ class Chart:
     places : list of Sum
         Every coordinate.
     start, rates : dict of str to ball
-        Of every variable.
+        Of every variable; the time is zero.
     rows : list of Row
         Those that are not solved.
     rounds : list of Round
@@ -83,6 +84,7 @@ class Chart:
         chart = cls(table, symbols, places, rows=list(table.rows), taken=frozenset(taken))
         for name, place, rate in zip(symbols, table.q, table.v, strict=True):
             chart.start[name], chart.rates[name] = place, rate
+        chart.start[TIME] = ZERO
         while any(chart._solves(row) for row in chart.rows):
             pass
         return chart
@@ -228,11 +230,7 @@ class Chart:
 
     def _new(self, name: str, taken: str = "") -> str:
         """Return a name that no variable has."""
-        used, count, new = {*self.symbols, *self.start, *self.taken, taken}, 1, name
-        while new in used:
-            count += 1
-            new = f"{name}{count}"
-        return new
+        return unused(name, {*self.symbols, *self.start, *self.taken, taken})
 
     def _divides(self, row: Row) -> bool:
         """Solve a product that is constant for one of its factors."""

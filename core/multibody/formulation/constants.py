@@ -10,6 +10,7 @@ from core.multibody.formulation.formula_nodes import digits_of, is_short
 from core.multibody.formulation.notation.latex import latex
 from core.multibody.formulation.notation.mathml import mathml
 from core.multibody.formulation.notation.plain import plain
+from core.multibody.formulation.unused_names import unused
 
 
 class Constants:
@@ -23,7 +24,6 @@ class Constants:
 
     def __init__(self, reserved: Collection[str]) -> None:
         self._reserved, self._named = frozenset(reserved), dict[str, str]()
-        self._count = 0
 
     def plain(self, node: Node) -> str:
         """Return a formula as text."""
@@ -51,8 +51,6 @@ class Constants:
         return Node(node.kind, node.text, tuple(self._with_names(inner) for inner in node.inner))
 
     def _name(self, digits: str) -> str:
-        while digits not in self._named:
-            self._count += 1
-            if f"c{self._count}" not in self._reserved:
-                self._named[digits] = f"c{self._count}"
+        if digits not in self._named:
+            self._named[digits] = unused("c", {*self._reserved, *self._named.values()}, first="1")
         return self._named[digits]

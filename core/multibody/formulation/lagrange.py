@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from core.multibody.algebra.polynomials import ONE, Ball
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.trigonometric_sums import TIME, Sum, Term, Variable, added
 
@@ -171,25 +171,6 @@ def _of_one(term: Term, value: Ball) -> Sum | None:
     if power == -1:
         return None
     return Sum({Term(((Variable(name), power + 1),)): value / (power + 1)})
-
-
-def value_at_start(chart: Chart, formula: Sum) -> Ball:
-    """Return the value of a function of variables and rates at the start."""
-    total = ONE - ONE
-    for term, value in formula.terms.items():
-        for variable, power in term.factors:
-            value = value * _known(chart, variable) ** power
-        if term.function:
-            angle = sum((chart.start.get(name, ONE - ONE) * x for name, x in term.wave), ONE - ONE)
-            value = value * (angle.cos() if term.function == "cos" else angle.sin())
-        total = total + value
-    return total
-
-
-def _known(chart: Chart, variable: Variable) -> Ball:
-    if variable.name == TIME:
-        return ONE - ONE
-    return (chart.start, chart.rates)[variable.order][variable.name]
 
 
 def measures_of(chart: Chart) -> list[Sum]:

@@ -9,6 +9,7 @@ from core.multibody.algebra.polynomials import Ball
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.formula_nodes import call, node_of_sum
 from core.multibody.formulation.trigonometric_sums import TIME, Sum
+from core.multibody.formulation.unused_names import unused
 from core.multibody.language.motion_formulas import LENGTH
 from core.multibody.laws.law import Input, Law
 
@@ -21,11 +22,9 @@ def force_symbols(laws: Sequence[Law], taken: Collection[str]) -> list[str]:
     owners = [law.name for law in laws]
     found: list[str] = []
     for name in owners:
-        alone = owners.count(name) == 1 and f"{name}.force" not in taken
-        count = 1
-        while (new := f"{name}.force" if alone else f"{name}.force_{count}") in {*found, *taken}:
-            count += 1
-        found.append(new)
+        used, alone = {*found, *taken}, f"{name}.force"
+        free = owners.count(name) == 1 and alone not in used
+        found.append(alone if free else unused(f"{alone}_", used, first="1"))
     return found
 
 

@@ -61,7 +61,7 @@ def linear_equations(equations: Mapping[str, Sum], start: Mapping[str, Ball]) ->
 
 def _is_stable(equations: Mapping[str, Sum], place: Mapping[str, Ball]) -> bool:
     """Return whether the stiffness at a place is positive definite: all its leading minors are positive."""
-    stiffness = [[value_of(one.derivative(Variable(n)), place) for n in equations] for one in equations.values()]
+    stiffness = [[one.derivative(Variable(n)).value(place) for n in equations] for one in equations.values()]
     return all(arb_mat([row[:k] for row in stiffness[:k]]).det() > 0 for k in range(1, len(stiffness) + 1))
 
 
@@ -75,8 +75,8 @@ def _place_of_rest(equations: Mapping[str, Sum], start: Mapping[str, Ball]) -> d
     statics = {name: Sum({t: x for t, x in one.terms.items() if _rests(t)}) for name, one in equations.items()}
     place = {name: start[name] for name in names}
     for _ in range(NEWTON_STEPS):
-        slopes = [[value_of(one.derivative(Variable(name)), place) for name in names] for one in statics.values()]
-        left = [[value_of(one, place)] for one in statics.values()]
+        slopes = [[one.derivative(Variable(name)).value(place) for name in names] for one in statics.values()]
+        left = [[one.value(place)] for one in statics.values()]
         try:
             steps = arb_mat(slopes).solve(arb_mat(left)).entries()
         except ZeroDivisionError:
@@ -101,25 +101,12 @@ def _rests(term: Term) -> bool:
     return all(variable.order == 0 for variable, _ in term.factors)
 
 
-def value_of(formula: Sum, places: Mapping[str, Ball]) -> Ball:
-    """Return the value of a sum at rest, where every rate is zero."""
-    total = ZERO
-    for (factors, function, wave), value in formula.terms.items():
-        for variable, power in factors:
-            value = value * (places[variable.name] ** power if variable.order == 0 else ZERO)
-        if function:
-            angle = sum((places[name] * x for name, x in wave), ZERO)
-            value = value * (angle.cos() if function == "cos" else angle.sin())
-        total = total + value
-    return total
-
-
 Matrix = tuple[tuple[float, ...], ...]
 
 
 def _matrix(equations: Mapping[str, Sum], order: int, about: Mapping[str, Ball]) -> Matrix:
     """Return the derivatives of equations by accelerations, rates or places, at rest at a place."""
     return tuple(
-        tuple(in_doubles(value_of(one.derivative(Variable(name, order)), about)) for name in equations)
+        tuple(in_doubles(one.derivative(Variable(name, order)).value(about)) for name in equations)
         for one in equations.values()
     )

@@ -17,7 +17,7 @@ from core.multibody.formulation.constants import Constants
 from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
 from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
-from core.multibody.formulation.lagrange import ENERGY, Conserved, lagrange_equations, measures_of, value_at_start
+from core.multibody.formulation.lagrange import ENERGY, Conserved, lagrange_equations, measures_of
 from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
 from core.multibody.formulation.linear_equations import linear_equations
 from core.multibody.formulation.sides import Sides, constant_accelerations, equation_sides
@@ -154,7 +154,7 @@ def _write_part(
         written.lagrangian = None
     elif written.lagrangian is not None:
         written.lagrangian.append(found.lagrangian)
-    written.conserved += [(one, value_at_start(chart, one.formula)) for one in found.conserved]
+    written.conserved += [(one, one.formula.value(chart.start, chart.rates)) for one in found.conserved]
     if not multipliers and not piece.table.acting:
         written.linear += linear_equations(found.equations, chart.start)
     written.closed |= closed_forms(chart, motion, constant_accelerations(found.equations))
@@ -180,9 +180,8 @@ def _write_body(written: _Written, body: TurningBody, name: str, piece: Piece) -
     )
     written.equations += equation_sides(euler_equations(body, rates, down), order=1)
     written.lagrangian = None
-    chart = Chart(piece.table, [], start=start)
     for what, formula in conserved_of_body(body, rates, down).items():
-        written.conserved.append((Conserved(f"{what} of {name}", formula), value_at_start(chart, formula)))
+        written.conserved.append((Conserved(f"{what} of {name}", formula), formula.value(start)))
     for i in piece.indices:
         del written.places[i]
 

@@ -13,6 +13,7 @@ from core.formulas import Node
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, entry
 from core.multibody.formulation.chart import DIRECTION, Chart
 from core.multibody.formulation.formula_nodes import call, node_of_poly
+from core.multibody.formulation.unused_names import unused
 from core.multibody.reduction.reduction import Reduced
 
 _AXES = {"x": "1", "y": "2", "z": "3"}
@@ -24,12 +25,7 @@ def symbols_of(names: Sequence[str]) -> list[str]:
     """Return names of coordinates as variables, each once."""
     found: list[str] = []
     for name in names:
-        stem = new = _symbol(name)
-        count = 1
-        while new in found:
-            count += 1
-            new = f"{stem}{count}"
-        found.append(new)
+        found.append(unused(_symbol(name), found))
     return found
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from core.multibody.algebra.polynomials import ONE, Ball, Poly, add_term, is_zero
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, add_term, is_zero
 
 TIME = "t"
 """The name of the time."""
@@ -178,6 +178,32 @@ class Sum:
                 part = part * _turned(term.function, wave, slope, value)
             parts.append(part)
         return added(parts)
+
+    def value(self, places: Mapping[str, Ball], *derivatives: Mapping[str, Ball]) -> Ball:
+        """Return the value of a sum.
+
+        Parameters
+        ----------
+        places : mapping of str to ball
+            Of every variable in it, the time among them.
+        *derivatives : mapping of str to ball
+            Rates, accelerations and so on, of which orders are left out at the end that are zero.
+
+        Raises
+        ------
+        KeyError
+            For a variable that has no value.
+        """
+        total = ZERO
+        for (factors, function, wave), value in self.terms.items():
+            for (name, order), power in factors:
+                known = (places, *derivatives)[order][name] if order <= len(derivatives) else ZERO
+                value = value * known**power
+            if function:
+                angle = sum((places[name] * x for name, x in wave), ZERO)
+                value = value * (angle.cos() if function == "cos" else angle.sin())
+            total = total + value
+        return total
 
     def constant(self) -> Ball | None:
         """Return the value of a sum that is a constant, None of another."""

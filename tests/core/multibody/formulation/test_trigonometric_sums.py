@@ -96,6 +96,20 @@ def test_inverses() -> None:
     assert (product * inverse).constant() == 1
 
 
+def test_values_are_those_of_the_terms() -> None:
+    total = X * X * SA + INVERSE * CB * Sum.variable("y", 1) + Sum.variable(TIME) * CA + Sum.variable("x", 2)
+    places, rates = ({name: arb(x) for name, x in known.items()} for known in (VALUES, RATES))
+    assert float(total.value(places, rates, {"x": arb(7)})) == pytest.approx(value(total - Sum.variable("x", 2)) + 7)
+    at_rest = total - INVERSE * CB * Sum.variable("y", 1) - Sum.variable("x", 2)
+    assert float(total.value(places)) == pytest.approx(value(at_rest), rel=1e-14)
+
+
+@pytest.mark.parametrize("total", [X, SA, Sum.variable("x", 1), INVERSE * CB])
+def test_what_has_no_value_has_none_in_a_sum(total: Sum) -> None:
+    with pytest.raises(KeyError):
+        total.value({"c": ONE}, {"c": ONE})
+
+
 def test_partial_derivatives() -> None:
     total = X * X * SA
     assert total.derivative(Variable("x")) == X * SA + X * SA
