@@ -189,6 +189,15 @@ def names_of(node: Node) -> frozenset[str]:
     return frozenset({node.text}) if node.kind == "name" else frozenset().union(*map(names_of, node.inner))
 
 
+def is_formula(text: str, known: Collection[str]) -> bool:
+    """Return whether a text is a decimal, or a formula over known names."""
+    try:
+        Formula.read(text, known)
+    except InvalidParameter:
+        return False
+    return True
+
+
 def names_in(text: str) -> frozenset[str]:
     """Return what stands as a name or function in a text; nothing of what is no formula."""
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from core.assessment.figures import is_null
 from core.assessment.graded_question import GradedQuestion
@@ -26,6 +26,8 @@ from core.notices import Notice
 from core.sensitivities.figure import Figure
 
 Wanted = Literal["equals", "least", "largest", "infinite", "changes", "happens"]
+
+WANTED: tuple[Wanted, ...] = get_args(Wanted)
 
 MOST_INPUTS = 3
 """Inputs that are varied together."""

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from math import exp, isfinite, log, nextafter, sqrt, ulp
 from typing import Literal
 
 from core.errors import InvalidParameter, Path
+from core.formulas import is_formula
 
 Scale = Literal["linear", "log"]
 
 LARGEST = 1.7e308
-"""Largest width of a range, so that no difference within it overflows."""
+"""Largest width of a range, so that no difference within it overflows, and largest size of what a figure equals."""
+
+
+def can_vary(present: object, names: Collection[str]) -> bool:
+    """Return whether what stands in a request is a number, or a formula over names."""
+    return is_formula(present, names) if isinstance(present, str) else type(present) in (int, float)
 
 
 @dataclass(frozen=True)

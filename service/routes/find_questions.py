@@ -14,22 +14,18 @@ from core.assessment.units import factor
 from core.assessment.varied_input import LONGEST_WORD
 from core.errors import InvalidParameter, Path, inside_field, pointer_of
 from core.find.figures import Happens
-from core.find.search import MOST_INPUTS, Condition, Wanted
-from core.find.varied import Scale, Varied
-from core.formulas import Formula
+from core.find.search import MOST_INPUTS, WANTED, Condition
+from core.find.varied import LARGEST, Scale, Varied, can_vary
 from core.near_names import did_you_mean
 from core.sensitivities.figure import figure_of
 from service.requests.figures import NamedEvent, WrittenFigure
-from service.requests.layout import ARRAY, OBJECT
 from service.routes.assessments.question_table import EndpointRequest
 from service.routes.declared_units import unit_at
 from service.routing import PostRoute
-from service.schemas import Request
+from service.schemas import ObjectOrArray, Request
 
 Number = Annotated[float | str | dict[str, Any], SkipValidation()]
 """A number as it is written: a JSON number, a decimal, or a value with its unit."""
-
-WANTED: tuple[Wanted, ...] = ("equals", "least", "largest", "infinite", "changes", "happens")
 
 
 class InputRange(Request):
@@ -71,24 +67,15 @@ class ConditionForm(Request):
     happens: Literal[True] | None = Field(default=None, description="The event happens.")
 
 
-class OneOrMany:
-    """Labels the two members of a union, so that a fault names the one that the client meant."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
-        schema: dict[str, Any] = handler(source)
-        first, second = schema["choices"]
-        return {"type": "union", "mode": "left_to_right", "choices": [(first, OBJECT), (second, ARRAY)]}
-
-
 class FindRequest(Request):
     """A question, what is varied in it, and what is to hold of its answer."""
 
     question: EndpointRequest
     vary: Annotated[
-        InputRange | Annotated[list[InputRange], Field(min_length=1, max_length=MOST_INPUTS)], OneOrMany()
+        InputRange | Annotated[list[InputRange], Field(min_length=1, max_length=MOST_INPUTS)], ObjectOrArray()
     ] = Field(description=f"What is varied: one number, or up to {MOST_INPUTS} of them in an array.")
     until: Annotated[
-        ConditionForm | Annotated[list[ConditionForm], Field(min_length=1, max_length=MOST_INPUTS)], OneOrMany()
+        ConditionForm | Annotated[list[ConditionForm], Field(min_length=1, max_length=MOST_INPUTS)], ObjectOrArray()
     ] = Field(description="What is to hold of the answer: as many conditions as numbers that are varied.")
     answers: bool = Field(default=False, description="Whether the answer to the question comes with each solution.")
 
@@ -119,21 +106,11 @@ def _place(pointer: str, request: Any, within: Path) -> Path:
     except InvalidParameter:
         path = ()
     present = at(request, path) if path else None
-    if path and _is_number(present, request):
+    if path and can_vary(present, request.get("let") or ()):
         return path
     near = did_you_mean(pointer, [pointer_of(one) for one in known])
     remedy = near or "what is varied has to be in the request of the question, with any value"
     raise InvalidParameter(within, "lead to a number in the request", remedy=remedy)
-
-
-def _is_number(present: Any, request: Any) -> bool:
-    if isinstance(present, str):
-        try:
-            Formula.read(present, request.get("let") or ())
-        except InvalidParameter:
-            return False
-        return True
-    return type(present) in (int, float)
 
 
 def _number(given: Any, unit: str | None, place: Path) -> float:
@@ -157,7 +134,7 @@ def _number(given: Any, unit: str | None, place: Path) -> float:
             number = None
     if isinstance(number, bool) or not isinstance(number, (int, float)):
         raise InvalidParameter(place, 'be a number, a decimal in quotes, or {"value", "unit"}')
-    if abs(number) > 1.7e308 or not isfinite(number):
+    if abs(number) > LARGEST or not isfinite(number):
         raise InvalidParameter(place, "be finite")
     return float(number)
 

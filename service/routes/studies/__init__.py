@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from time import thread_time
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -13,7 +13,7 @@ from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.propagation import at
 from core.assessment.varied_input import LONGEST_WORD
 from core.errors import BudgetExceeded, InvalidParameter, Path
-from core.formulas import Formula
+from core.formulas import is_formula
 from core.quantities import Quantity
 from core.studies.designs import Design, Kind
 from core.studies.statistics import BINS, PROBABILITIES, STATISTICS, Statistic
@@ -189,7 +189,8 @@ def _places(question: StudyRequest, route: PostRoute) -> tuple[list[Path], list[
             if present is None:
                 remedy = "what varies has to be in the request of the question"
                 raise InvalidParameter(within, "lead to a value in the request", remedy=remedy)
-            if entry.values is None and isinstance(present, str) and not _is_number(present, question.question.request):
+            names = question.question.request.get("let") or ()
+            if entry.values is None and isinstance(present, str) and not is_formula(present, names):
                 remedy = "words vary by values"
                 raise InvalidParameter(within, "lead to a number or a formula in the request", remedy=remedy)
             if any(path[: len(other)] == other or other[: len(path)] == path for other in taken):
@@ -205,15 +206,6 @@ def _places(question: StudyRequest, route: PostRoute) -> tuple[list[Path], list[
             raise InvalidParameter(("quantities", k), A_FIGURE)
         figures.append(path)
     return inputs, figures
-
-
-def _is_number(text: str, request: Any) -> bool:
-    """Return whether a text is a decimal, or a formula over the names of a request."""
-    try:
-        Formula.read(text, request.get("let") or ())
-    except InvalidParameter:
-        return False
-    return True
 
 
 def _steps(pointer: str, within: Path) -> Path:

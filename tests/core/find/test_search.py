@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from core.errors import InvalidParameter, MechanicsError
-from core.find.varied import Varied
+from core.find.varied import Varied, can_vary
 from core.sensitivities.figure import Count
 from tests.core.find.toy_question import Function, search
 
@@ -276,3 +276,20 @@ def test_figures_that_do_not_fit_are_refused() -> None:
         search(lambda x: [1.0, x], (0.0, 3.0), "equals", 1.0)
     with pytest.raises(InvalidParameter, match="which number"):
         search([lambda x, y: x, lambda x, y: y], [(0.0, 3.0)] * 2, "least")
+
+
+@pytest.mark.parametrize(
+    ("present", "yes"),
+    [
+        (1, True),
+        (2.5, True),
+        ("0.1", True),
+        ("2*h", True),
+        ("2*k", False),
+        ("a word", False),
+        (True, False),
+        ([1], False),
+    ],
+)
+def test_numbers_and_formulas_can_vary(present: object, yes: bool) -> None:
+    assert can_vary(present, ["h"]) is yes
