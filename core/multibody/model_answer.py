@@ -50,7 +50,7 @@ class PartModel:
     coordinates : tuple of str
         Those that remain.
     period : float or None
-        Time after which it repeats (s), up to a turn about the vertical by `precession`.
+        Time after which its state returns (s), up to a turn about the vertical by `precession`.
     precession : float or None
         That angle (rad).
     modes : tuple of SmallMotion
@@ -101,6 +101,17 @@ class SceneModel:
     apart: tuple[PartModel, ...]
     noticed: tuple[str, ...]
     redundant: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def moving(self) -> list[PartModel]:
+        """The parts that do not rest."""
+        return [part for part in self.apart if part.name != "rest"]
+
+    @property
+    def repeats(self) -> PartModel | None:
+        """The one part that moves where its state returns: its period is that of the scene."""
+        moving = self.moving
+        return moving[0] if len(moving) == 1 and moving[0].period is not None else None
 
 
 @dataclass(frozen=True)

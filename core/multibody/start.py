@@ -58,7 +58,7 @@ def scene_model(found: Modelled, noticed: list[str], multipliers: Multipliers) -
     table = found.described.measures.table
     apart = []
     for piece, motion in found.moving:
-        period = motion.period
+        period = found.whole.returns_after(motion)
         apart.append(
             PartModel(
                 motion.name,

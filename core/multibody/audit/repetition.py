@@ -123,7 +123,13 @@ def check_period(
     assert period is not None, "the caller knows the period"
     late = max(answer.period_error or 0.0, ledger.rounding * period)
     away, allowed = _apart(description, answer, start, later, late, ledger.rounding)
-    ledger.compare("the state returns after the period", "", later.times[:1], away[:1], allowed[:1])
+    ledger.compare(
+        "the state returns after the period (in units of what is known of it)",
+        "",
+        later.times[:1],
+        away[:1],
+        allowed[:1],
+    )
     if away.max() < TOLD_APART or not _leaves(answer, start, later, period, ledger.rounding):
         # The motion is hardly larger than what is known of it, or begins beside a place where it would rest.
         return

@@ -138,7 +138,7 @@ class Motion(Protocol):
 
     @property
     def period(self) -> Ball | None:
-        """The period in seconds, where there is one."""
+        """The period in seconds, where there is one: it repeats, up to a turn about the vertical and what moves on."""
 
     @property
     def moves(self) -> bool:
@@ -159,6 +159,11 @@ class Motion(Protocol):
     def winding_error(self) -> float:
         """Error of that angle (rad)."""
         return 0.0
+
+    @property
+    def moved_on(self) -> Sequence[Ball]:
+        """By how much a period moves each of its coordinates on; empty where all of them return."""
+        return ()
 
     @property
     def winds_on(self) -> bool:

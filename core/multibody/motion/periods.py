@@ -80,6 +80,15 @@ class Periodic(Motion):
         return (arb(self.length[0], self.uncertainty[0]) + arb(self.length[1])) * arb(2) ** self.units.time
 
     @property
+    def moved_on(self) -> Sequence[Ball]:
+        """By how much a period moves each of its coordinates on, as well as two runs agree in it."""
+        off = self.uncertainty[1]
+        return [
+            (arb(high, off) + arb(low)) * arb(float(up)) if high else arb(0)
+            for (high, low), up in zip(self.shift, self.units.up, strict=True)
+        ]
+
+    @property
     def winds_on(self) -> bool:
         """Whether a period turns it about the vertical, or moves some coordinates on."""
         return self.winding != 0.0 or bool(np.any(self.shift))

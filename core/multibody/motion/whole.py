@@ -13,7 +13,7 @@ from core.arrays import Floats, Integers, largest_magnitude
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, entry
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, LinearForm, Poly, entry
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
@@ -135,6 +135,20 @@ class Whole:
     def motions_of(self, coordinates: Sequence[int]) -> list[Motion]:
         """Return the motions of the parts that these coordinates of the scene follow."""
         return [self.parts[k][1] for k in self.parts_of(coordinates)]
+
+    def returns_after(self, motion: Motion) -> Ball | None:
+        """Return the time (s) after which the state of a part returns, up to a turn about the vertical.
+
+        None where it never does: what rolls on is elsewhere after its period, what turns over by whole turns is not.
+        """
+        indices = next(own for own, one in self.parts if one is motion)
+        moved = dict(zip(indices, motion.moved_on, strict=False))
+        for expression, unit in zip(self.reduced.expressions, self.measures.table.units, strict=True):
+            way = sum((value * moved[key[0]] for key, value in expression.items() if key and key[0] in moved), ZERO)
+            turns = way / (2 * arb.pi()) if unit == "rad" else way
+            if not (turns.contains_integer() if unit == "rad" else turns.contains(0)):
+                return None
+        return motion.period
 
     def turned(self, direction: tuple[int, int], times: Floats) -> list[Ball] | None:
         """Return by how much a direction has turned since the start (rad), None where the motion does not know it."""

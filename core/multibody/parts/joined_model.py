@@ -34,5 +34,5 @@ def period_of(solutions: Sequence[SceneSolution]) -> tuple[float | None, float |
 
 def _moves(solution: SceneSolution) -> bool:
     if solution.phases is None:
-        return any(part.name != "rest" for part in solution.model.apart)
+        return bool(solution.model.moving)
     return any(phase.model != "rest" for phase in solution.phases)

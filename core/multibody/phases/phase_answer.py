@@ -7,8 +7,6 @@ from dataclasses import replace
 from itertools import zip_longest
 
 from core.errors import NotApplicable, SlackAtStart, inside_field
-from core.multibody.algebra.doubles import error_in_doubles
-from core.multibody.algebra.polynomials import Ball
 from core.multibody.answer import BodyAcceleration, ForceAnswer, MotionPhase, SceneProblem, SceneSolution
 from core.multibody.equations.packed import nearest
 from core.multibody.equations_answer import SceneEquations
@@ -56,19 +54,21 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
     trajectory = request.solved(system)
     occurrences, extremes = (None, None) if trajectory is None else system.searched(request.times, request.accuracy)
     model, accelerations, forces = _start_of(motion, float(request.times.max(initial=0.0)))
-    outputs, period = request.outputs, _period(motion)
+    outputs = request.outputs
     periods = [part.period for part in model.apart if part.period is not None]
     if periods and ends_within(motion.phases[0], max(periods)):
         # What would repeat comes to an end, or its strings to another phase, before it does.
-        period, model = None, replace(model, apart=tuple(map(_without_period, model.apart)))
+        model = replace(model, apart=tuple(map(_without_period, model.apart)))
+    # Of a motion through phases it is not stated.
+    repeats = model.repeats if motion.smooth else None
     answer = SceneSolution(
         model,
         accelerations if "accelerations" in outputs else None,
         forces if "forces" in outputs else None,
         replace(energy_of(motion.base), conserved=_conserved(motion)) if "energy" in outputs else None,
         trajectory,
-        None if period is None else float(period),
-        None if period is None else error_in_doubles(period),
+        None if repeats is None else repeats.period,
+        None if repeats is None or repeats.errors is None else repeats.errors.period,
         equilibria_of(motion.base) if "equilibria" in outputs else None,
         tuple(motion.events),
         motion.ended,
@@ -113,14 +113,6 @@ def _motion_of(scene: Scene, request: SceneRequest) -> PhaseMotion:
     if slack and passes and "equilibria" not in request.outputs:
         return _in_phases(scene, request)
     return motion
-
-
-def _period(motion: PhaseMotion) -> Ball | None:
-    """Return the period of a motion of which one part moves, None where it has none or is not smooth."""
-    if not motion.smooth:
-        return None
-    periods = [part.period for _, part in motion.phases[0].models[0].whole.parts if part.moves]
-    return periods[0] if len(periods) == 1 else None
 
 
 def _without_period(part: PartModel) -> PartModel:

@@ -52,8 +52,8 @@ def audited_digits(scene: Scene, answer: ProvenAnswer, moving: Moving, times: Fl
 
 
 def _in_doubles(answer: ProvenAnswer, times: Floats) -> SceneSolution:
-    moves = [part for part in answer.model.apart if part.name != "rest"]
-    period = None if len(moves) != 1 or moves[0].period is None else float(moves[0].period)
+    repeats = answer.model.repeats
+    period = None if repeats is None or repeats.period is None else float(repeats.period)
     if period is not None and period > times.max(initial=0.0):
         # A series that nobody asks for would be followed up to there.
         period = None

@@ -252,8 +252,8 @@ def _in_numerals(model: SceneModel, found: Modelled, number: Callable[[Ball], An
     apart = []
     for part, (_, motion) in zip(model.apart, found.whole.parts, strict=True):
         modes = tuple(SmallMotion(number(mode.frequency), number(mode.growth)) for mode in motion.modes)
-        known = motion.how == "closed form" and motion.period is not None
-        period = number(motion.period) if known else None
+        returns = found.whole.returns_after(motion) if motion.how == "closed form" else None
+        period = None if returns is None else number(returns)
         apart.append(PartModel(part.name, part.why, part.degrees_of_freedom, part.coordinates, period, None, modes))
     return SceneModel(**{**vars(model), "apart": tuple(apart)})
 

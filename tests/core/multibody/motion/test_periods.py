@@ -63,3 +63,53 @@ def test_the_period_of_a_bead_on_a_parabola_is_the_integral_along_it(slope: str)
 
         right = 4 * mpmath.quad(along, [0, mpmath.pi / 4, mpmath.pi / 2])
         assert abs(found - right) <= 3e-16 * right
+
+
+@pytest.mark.parametrize("gravity", ["-9.81", "0"])
+@pytest.mark.parametrize("heading", [("1", "0"), ("0", "1"), ("0.6", "0.8"), ("-sqrt(0.5)", "sqrt(0.5)")])
+@pytest.mark.parametrize("kind", ["disc", "ellipsoid"])
+def test_what_rolls_straight_on_has_no_period(gravity: str, heading: tuple[str, str], kind: str) -> None:
+    """Its directions return at every turn, and the place does not."""
+    x, y = heading
+    size = {"radius": 0.5} if kind == "disc" else {"semi_axes": [0.5, 0.5, 0.2]}
+    coin = {
+        "mass": 1,
+        "shape": {"kind": kind, **size},
+        "at": [0, 0, 0.5],
+        "axes": [[x, y, 0], [0, 0, 1], [y, f"-({x})", 0]],
+        "velocity": [f"2*({x})", f"2*({y})", 0],
+    }
+    table = {"kind": "rolling", "place": "coin", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+    scene = {"gravity": [0, 0, gravity], "bodies": {"coin": coin}, "connections": [table]}
+    answer = solve_scene(read(scene), [0.0, 1.0, 1e3])
+    assert (answer.period, [part.period for part in answer.model.apart]) == (None, [None])
+    place = column(answer, "coin.position")
+    with mpmath.workdps(30):
+        way = [mpmath.sqrt(0.5) * s if "sqrt" in t else mpmath.mpf(t) for t, s in zip(heading, (-1, 1), strict=True)]
+        for i, t in enumerate([0.0, 1.0, 1e3]):
+            assert max(abs(2 * t * w - p) for w, p in zip(way, place.values[i], strict=False)) <= place.error + 1e-13
+
+
+@pytest.mark.parametrize(("relation", "returns"), [("3*p.angle + w.angle", True), ("p.angle + 3*w.angle", False)])
+def test_what_turns_over_returns_where_all_of_its_turns_are_whole(relation: str, returns: bool) -> None:
+    """A pendulum that turns over drives a wheel by three turns, or by a third of one, in each of its own."""
+    hanging = {"mass": 1, "inertia": 0.2, "at": [0, -1], "angle": 0, "velocity": [9, 0], "angular_velocity": 9}
+    bodies = {
+        "p": {**hanging, "places": {"top": [0, 1]}},
+        "w": {"mass": 1, "inertia": 0.3, "at": [2, 0], "shape": {"kind": "disc", "radius": 0.5}},
+    }
+    connections = [
+        {"kind": "pin", "a": "p.top", "b": [0, 0]},
+        {"kind": "pin", "a": "w", "b": [2, 0]},
+        {"kind": "relation", "of": relation, "equals": 0},
+    ]
+    scene = {"gravity": [0, "-9.81"], "bodies": bodies, "connections": connections}
+    answer = solve_scene(read(scene), [0.0, 1.0])
+    assert (answer.period is not None) is returns
+    assert answer.model.apart[0].period == answer.period
+    if answer.period is not None:
+        with mpmath.workdps(30):
+            # theta'^2 = 81 - 4 (g/I) sin^2(theta/2): half the angle is the amplitude of 9 t/2.
+            inertia = 1 + mpmath.mpf("0.2") + 9 * mpmath.mpf("0.3")
+            right = 4 * mpmath.ellipk(4 * mpmath.mpf("9.81") / (81 * inertia)) / 9
+            assert abs(answer.period - right) <= 1e-15
