@@ -110,7 +110,7 @@ def unresolved_step(run: Run, i: int) -> bool:
 
 
 def jumps_of(curve: Curve) -> list[Solution]:
-    """Return where a number jumps, or comes or goes."""
+    """Return where a number jumps, or where the answer begins or ceases to have it."""
     run = scanned(curve, 0.0, unresolved_step, FIRST)
     found = borders_of(curve, lambda x: _presence(curve, x), curve.value)
     for i in range(len(run.xs) - 1):

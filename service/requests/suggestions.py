@@ -43,6 +43,8 @@ SYNONYMS: Mapping[str, tuple[str, ...]] = {
     "angular_velocity": ("omega", "w", "omega0", "w0", "spin", "rate", "rates", "angular-rate", "angular-speed"),
     "angular_velocities": ("omegas", "spins", "rates"),
     "attitude": ("quaternion", "orientation", "q", "rotation"),
+    "axes": ("attitude", "quaternion", "orientation"),
+    "at": ("position",),
     "time": ("t", "times"),
     "times": ("t", "time", "duration"),
     "gravity": ("g",),

@@ -92,8 +92,9 @@ class FindAnswer(Envelope):
 
 DESCRIPTION = """The question is any other request. Each value has an error bound that follows from the error of the
 figure and its slope: on both sides of a root the figure is above and below the value by more than its own errors. What
-is not continuous is a result, too: an event that comes or goes is a border, a leap past the value a jump. Samples
-decide where is looked; a pair of solutions closer than `resolution` may be missed, unless `complete` is true."""
+is not continuous is a result, too: a border where an event begins or ceases to happen, a jump where the figure leaps
+past the value. Samples decide where to look: a pair of solutions closer than `resolution` may be missed, unless
+`complete` is true."""
 
 
 def finding(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> PostRoute:

@@ -159,10 +159,8 @@ def _start_of(
     still = [name for name in at_rest(found) if all(name in names for names in resting)]
     if still:
         last = end if motion.ended is None else motion.ended.time
-        names = ", ".join(still)
-        noticed.append(
-            f"constant throughout the motion: {names}" if motion.smooth else f"until {last:g} s nothing moves {names}"
-        )
+        names, when = ", ".join(still), f"until {last:g} s" if last > 0.0 else "at the start"
+        noticed.append(f"constant throughout the motion: {names}" if motion.smooth else f"at rest {when}: {names}")
     return (
         scene_model(found, noticed, multipliers),
         accelerations_of(found.described, found.whole.acceleration),

@@ -147,7 +147,7 @@ class FormulaRows:
     def _follow(self, values: Callable[[Ball], Sequence[Ball]], argument: Poly) -> list[Poly]:
         """Return coordinates that are functions of a polynomial, whose rate row is added next."""
         if self.measures.sketch and not self._is_timed(argument):
-            rule = "have sums, products, quotients, whole powers and square roots alone of what is no time"
+            rule = "have no functions of places or angles other than square roots"
             raise InvalidParameter(self.path, rule, remedy="give the places exactly, without assemble")
         return [self._coordinate(value, argument) for value in values(self._value(argument))]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import get_args
 
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.bodies import Body
+from core.multibody.language.body import SceneBody
 from core.near_names import LONGEST_NAME, plain
 from core.quantities import members_of
 from core.studies.statistics import Statistic
@@ -25,7 +27,13 @@ def test_every_word_stands_for_a_name_that_there_is() -> None:
     fields = {name for route in questions() for name in _names(route.question)}
     outputs = {"time", "apex_tension", "tension", "acceleration", "accelerations"}
     inner = {"density", "moments", "tensor", "radius", "mass", "tolerance", "step"}
-    assert set(SYNONYMS) <= {*KINDS, *fields, *outputs, *inner, *get_args(Statistic)}
+    of_bodies = {field.name for field in dataclasses.fields(SceneBody)}
+    assert set(SYNONYMS) <= {*KINDS, *fields, *outputs, *inner, *of_bodies, *get_args(Statistic)}
+
+
+def test_words_of_free_rotation_are_answered_with_those_of_a_scene() -> None:
+    names = [field.name for field in dataclasses.fields(SceneBody)]
+    assert [nearest(word, names) for word in ("attitude", "quaternion", "position")] == ["axes", "axes", "at"]
 
 
 def _names(question: object) -> set[str]:

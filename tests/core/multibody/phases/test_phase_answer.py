@@ -84,7 +84,7 @@ def test_what_an_impact_moves_is_not_said_to_rest() -> None:
     answer = solve_scene(read(json.dumps(DISCS)), np.array([0.0, 1.0]))
     assert np.all(column(answer, "b.velocity").values[-1] != 0.0)
     assert answer.model.noticed == (
-        "until 1 s nothing moves a.angle, b.angle",
+        "at rest until 1 s: a.angle, b.angle",
         "constant throughout the motion: far.x, far.y",
     )
 

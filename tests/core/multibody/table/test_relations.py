@@ -153,7 +153,7 @@ def test_rounded_places_are_put_onto_a_curve_and_its_functions_follow() -> None:
 
 def test_a_sketch_is_not_put_onto_functions_of_places() -> None:
     sketch = point(1, 0, relation("p.y", "sin(p.x)")) | {"assemble": "nearest"}
-    with pytest.raises(InvalidParameter, match="square roots alone"):
+    with pytest.raises(InvalidParameter, match="other than square roots"):
         answer(sketch)
     with pytest.raises(PlacesDisagree):
         answer(point(1, 0, relation("p.y", "sin(p.x)")))
