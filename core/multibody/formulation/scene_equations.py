@@ -10,6 +10,7 @@ from core.formulas import Node
 from core.multibody.algebra.directions import scalar_product
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import Ball, is_zero
+from core.multibody.equations.dynamics import kinetic, potential
 from core.multibody.equations_answer import ConservedQuantity, LinearEquations, SceneEquations
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.closed_forms import closed_forms
@@ -20,6 +21,7 @@ from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_
 from core.multibody.formulation.lagrange import ENERGY, Conserved, lagrange_equations, measures_of
 from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
 from core.multibody.formulation.linear_equations import linear_equations
+from core.multibody.formulation.self_check import check_chart, check_formula
 from core.multibody.formulation.sides import Sides, constant_accelerations, equation_sides
 from core.multibody.formulation.symbols import columns_of, coordinates_of, symbols_of
 from core.multibody.formulation.trigonometric_sums import Sum, added
@@ -27,6 +29,7 @@ from core.multibody.motion.modelling import Modelled, Piece
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.turning_body import TurningBody, turning_body
 from core.multibody.start import NumberKind, energy_of
+from core.multibody.table.table import Table
 
 MOST_COORDINATES = 24
 """Coordinates of the tables of the parts together: the equations of twelve links, or of a bicycle, nobody reads."""
@@ -47,6 +50,8 @@ class _Written:
     closed: dict[str, Node] = field(default_factory=dict)
     numbers: dict[str, Ball] = field(default_factory=dict)
     places: dict[int, Sum] = field(default_factory=dict)
+    start: dict[str, Ball] = field(default_factory=dict)
+    rates: dict[str, Ball] = field(default_factory=dict)
     multipliers: int = 0
 
 
@@ -88,7 +93,7 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
         written.why.append("friction that turns with the slip is written with the direction that it starts with")
     conserved = _with_one_energy(found, written.conserved, len(moving))
     constants = Constants([*reserved, *written.numbers])
-    places = _places(found, written.places)
+    places = _places(found, written)
     written.forces |= _forces(found, written.places)
     shown = SceneEquations(
         {name: None if node is None else constants.plain(node) for name, node in written.coordinates.items()},
@@ -142,6 +147,7 @@ def _write_part(
     names = force_symbols(piece.table.acting, written.forces)
     multipliers = [f"{MULTIPLIER}{written.multipliers + k + 1}" for k in range(len(chart.rows))]
     written.multipliers += len(multipliers)
+    check_chart(chart)
     found = lagrange_equations(chart, names, multipliers)
     written.coordinates |= coordinates_of(chart, columns)
     written.why += chart.steps
@@ -154,9 +160,15 @@ def _write_part(
         written.lagrangian = None
     elif written.lagrangian is not None:
         written.lagrangian.append(found.lagrangian)
-    written.conserved += [(one, one.formula.value(chart.start, chart.rates)) for one in found.conserved]
+    for one in found.conserved:
+        value = one.formula.value(chart.start, chart.rates)
+        if one.name == ENERGY:
+            check_formula(one.name, "", one.formula, _energy(piece.table), chart.start, chart.rates)
+        written.conserved.append((one, value))
     if not multipliers and not piece.table.acting:
         written.linear += linear_equations(found.equations, chart.start)
+    written.start |= chart.start
+    written.rates |= chart.rates
     written.closed |= closed_forms(chart, motion, constant_accelerations(found.equations))
     for k, i in enumerate(piece.indices):
         written.places[i] = chart.places[k]
@@ -181,9 +193,16 @@ def _write_body(written: _Written, body: TurningBody, name: str, piece: Piece) -
     written.equations += equation_sides(euler_equations(body, rates, down), order=1)
     written.lagrangian = None
     for what, formula in conserved_of_body(body, rates, down).items():
+        if what == ENERGY:
+            check_formula(what, name, formula, _energy(piece.table), start, {})
         written.conserved.append((Conserved(f"{what} of {name}", formula), formula.value(start)))
     for i in piece.indices:
         del written.places[i]
+
+
+def _energy(table: Table) -> Ball:
+    """Return the energy at the start of a table without laws."""
+    return kinetic(table) + potential(table)
 
 
 def _forces(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:
@@ -196,9 +215,15 @@ def _forces(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:
     return {name: node_of_sum(total) for name, total in constraint_forces(measures.table, measures.forces, own).items()}
 
 
-def _places(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:
-    """Return the columns of bodies as formulas of the coordinates."""
-    expressions, answer = found.whole.reduced.expressions, {}
+def _places(found: Modelled, written: _Written) -> dict[str, Node]:
+    """Return the columns of bodies as formulas of the coordinates, which have the values and rates of the start."""
+    table, answer = found.described.measures.table, dict[str, Node]()
+    sums: dict[int, Sum] = {}
+    for i, expression in enumerate(found.whole.reduced.expressions):
+        if all(key[0] in written.places for key in expression if key):
+            sums[i] = _substituted(expression, written.places)
+            check_formula("place", table.names[i], sums[i], table.q[i], written.start, written.rates)
+            check_formula("velocity", table.names[i], sums[i].rate(), table.v[i], written.start, written.rates)
     for name, frame in found.described.measures.coordinates.frames.items():
         own = [(f"{name}.{axis}", i) for axis, i in zip("xyz", frame.position, strict=False)]
         if frame.axis is not None:
@@ -206,10 +231,10 @@ def _places(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:
         if frame.turn is not None:
             own.append((f"{name}.angle", frame.turn))
         for column, i in own:
-            if all(key[0] in places for key in expressions[i] if key):
-                answer[column] = node_of_sum(_substituted(expressions[i], places))
+            if i in sums:
+                answer[column] = node_of_sum(sums[i])
         if frame.turn is None and frame.direction is not None:
-            cosine, sine = (_substituted(expressions[i], places) for i in frame.direction)
+            cosine, sine = (sums[i] for i in frame.direction)
             answer[f"{name}.angle"] = _angle(cosine, sine)
     return answer
 
