@@ -111,6 +111,10 @@ class Arithmetic(Generic[T]):
     functions: Mapping[str, Callable[..., T]]
 
 
+NOTHING = Node("number", "0")
+"""The formula of zero."""
+
+
 @dataclass(frozen=True)
 class Formula:
     """A formula that can be read.

@@ -304,10 +304,10 @@ TESTED_IN |= {
             "audit/samples audit/start"
         ),
         "audit/test_definitions": (
-            "audit/bodies audit/contact_definitions audit/contacts audit/definition audit/definition_of "
-            "audit/joint_definitions audit/joints audit/law_definitions audit/laws "
-            "audit/newton audit/placement audit/rolling audit/string_definitions "
-            "audit/strings audit/surfaces"
+            "audit/between_places audit/bodies audit/contact_definitions audit/contacts audit/definition "
+            "audit/definition_of audit/joint_definitions audit/joints audit/law_definitions audit/laws "
+            "audit/newton audit/placement audit/rolling audit/string_definitions audit/strings "
+            "audit/surfaces"
         ),
         "assembly/test_assembled_scene": (
             "assembly/described_bodies assembly/exact_places assembly/metric assembly/misfit assembly/nearest_places "

@@ -16,14 +16,14 @@ def unit(vector: Sequence[Ball], path: Path) -> list[Ball]:
     InvalidParameter
         If it has none.
     """
-    square = sum((x * x for x in vector), ONE - ONE)
+    square = sum((x * x for x in vector), ZERO)
     if not square > 0:
         raise InvalidParameter(path, "have a direction: not all zero")
     # A vector along an axis stays exactly along it.
     single = [i for i, x in enumerate(vector) if not is_zero(x)]
     if len(single) == 1:
         positive = vector[single[0]] > 0
-        return [(ONE if positive else -ONE) if i == single[0] else ONE - ONE for i in range(len(vector))]
+        return [(ONE if positive else -ONE) if i == single[0] else ZERO for i in range(len(vector))]
     size = square.sqrt()
     return [x / size for x in vector]
 
@@ -34,7 +34,7 @@ def perpendicular(along: Sequence[Ball], path: Path) -> list[list[Ball]]:
     if len(t) == 2:
         return [[-t[1], t[0]]]
     k = min(range(3), key=lambda i: abs(float(t[i])))
-    e = [ONE if i == k else ONE - ONE for i in range(3)]
+    e = [ONE if i == k else ZERO for i in range(3)]
     first = unit(cross(t, e), path)
     return [first, cross(t, first)]
 

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from core.formulas import Node
+from core.multibody.audit.between_places import approach
 from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.driven import RelationDefinition
 from core.multibody.audit.formula_forces import ForcesByFormulas, PullByFormula, TorqueByFormulas, TwistByFormula
 from core.multibody.audit.formulas import FormulaValue, Read, names_of_place, names_of_turn, time_of
-from core.multibody.audit.joints import approach
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, length, spin_of
 from core.multibody.language.forces import AppliedForce, Damper, Field, Spring, Torque
 from core.multibody.language.joints import Relation

@@ -8,14 +8,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from core.multibody.audit.between_places import BetweenPlaces
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.formulas import FormulaValue
-from core.multibody.audit.laws import Pull, Twisting
+from core.multibody.audit.laws import Twisting
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, dot, spin_of
 
 
 @dataclass(frozen=True)
-class PullByFormula(Pull):
+class PullByFormula(BetweenPlaces):
     """A force along the line between two places whose value is a formula."""
 
     kind: ClassVar[str] = "spring"

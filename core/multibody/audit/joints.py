@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from core.multibody.audit.between_places import BetweenPlaces
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, Pose, across, carried, dot, length, rate
 
@@ -53,12 +54,6 @@ def carried_axes(pose: Pose | None) -> Numbers:
     if pose is None:
         return np.eye(3)
     return np.stack([carried(pose, tuple(row)) for row in np.eye(3).tolist()], axis=-1)
-
-
-def approach(a: Place, b: Place, placement: Placement, motion: Motion) -> Numbers:
-    """Return the rate of the distance of two places in a motion, which may be a virtual one (m/s)."""
-    d = b.at(placement) - a.at(placement)
-    return dot(d / length(d)[..., None], b.velocity(placement, motion) - a.velocity(placement, motion))
 
 
 @dataclass(frozen=True)
@@ -109,12 +104,10 @@ class Coincidence(Definition):
 
 
 @dataclass(frozen=True)
-class RodDefinition(Definition):
+class RodDefinition(BetweenPlaces):
     """Two places stay at a distance (m); the force is the pull."""
 
     kind: ClassVar[str] = "rod"
-    a: Place
-    b: Place
     length: float
 
     @property
@@ -122,17 +115,9 @@ class RodDefinition(Definition):
         """See `Definition.reach`."""
         return self.length
 
-    def distance(self, placement: Placement) -> Numbers:
-        """Return the distance of the places (m), shape ()."""
-        return length(self.b.at(placement) - self.a.at(placement))
-
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
         return {"length": self.distance(placement) - self.length}
-
-    def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
-        """See `Definition.efforts`."""
-        return {f"{self.name}.force": -approach(self.a, self.b, placement, motion)}
 
 
 @dataclass(frozen=True)

@@ -8,31 +8,16 @@ from typing import ClassVar
 
 import numpy as np
 
+from core.multibody.audit.between_places import BetweenPlaces, approach
 from core.multibody.audit.bodies import RigidBody
 from core.multibody.audit.contacts import turn_between
 from core.multibody.audit.definition import Definition
-from core.multibody.audit.joints import AXES, approach
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, cross, dot, length, spin_of
+from core.multibody.audit.joints import AXES
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, cross, dot, spin_of
 
 
 @dataclass(frozen=True)
-class Pull(Definition):
-    """A force along the line between two places, positive where it pulls them together."""
-
-    a: Place
-    b: Place
-
-    def distance(self, placement: Placement) -> Numbers:
-        """Return the distance of the places (m)."""
-        return length(self.b.at(placement) - self.a.at(placement))
-
-    def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
-        """See `Definition.efforts`."""
-        return {f"{self.name}.force": -approach(self.a, self.b, placement, motion)}
-
-
-@dataclass(frozen=True)
-class SpringDefinition(Pull):
+class SpringDefinition(BetweenPlaces):
     """A linear spring (N/m, m)."""
 
     kind: ClassVar[str] = "spring"
@@ -94,7 +79,7 @@ class SpringWithoutLength(Definition):
 
 
 @dataclass(frozen=True)
-class DamperDefinition(Pull):
+class DamperDefinition(BetweenPlaces):
     """A force against the rate of a distance (N s/m)."""
 
     kind: ClassVar[str] = "damper"
@@ -118,7 +103,7 @@ class DamperDefinition(Pull):
 
 
 @dataclass(frozen=True)
-class Attraction(Pull):
+class Attraction(BetweenPlaces):
     """A force of strength/r^2 (N m^2)."""
 
     kind: ClassVar[str] = "inverse-square"

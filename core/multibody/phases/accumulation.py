@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from core.multibody.algebra.polynomials import ONE, Ball, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.equations.expansion import Expansion
 from core.multibody.equations.polynomial_roots import first_negative
 from core.multibody.equations.starting_pieces import series_of
@@ -87,7 +87,7 @@ class Accumulation:
 
     def limit(self) -> tuple[list[Ball], list[Ball]]:
         """Return the state at the end."""
-        return self.state(self.length, ONE - ONE)
+        return self.state(self.length, ZERO)
 
     def keeps_sign(self, law: Law, sign: int) -> bool:
         """Return whether a formula certainly has a sign at all times before the end."""

@@ -20,6 +20,7 @@ from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.algebra.directions import unit
 from core.multibody.algebra.polynomials import (
     ONE,
+    ZERO,
     Ball,
     Poly,
     combined,
@@ -59,7 +60,7 @@ def chain(connection: Chain, measures: Measures, name: str, path: Path) -> None:
         )
     at = [evaluated(x, measures.table.q) for x in peg.at]
     ways = [_direction(measures, end, peg, (*path, "through", i)) for end, i in ((first, 0), (last, 2))]
-    bend = sum(((x + y) ** 2 for x, y in zip(*ways, strict=True)), ONE - ONE)
+    bend = sum(((x + y) ** 2 for x, y in zip(*ways, strict=True)), ZERO)
     if is_zero(bend):
         raise InvalidParameter(
             (*path, "through"), "bend at the peg", remedy="leave the peg out: describe the chain as a body"
@@ -80,7 +81,7 @@ def chain(connection: Chain, measures: Measures, name: str, path: Path) -> None:
         measures.hold(name, difference(coordinate(z), sides[0])),
         measures.hold(name, combined((ONE, coordinate(z)), (ONE, sides[1]), (-length, constant(ONE)))),
     )
-    pulls = [sum((x * y for x, y in zip(measures.coordinates.gravity, way, strict=True)), ONE - ONE) for way in ways]
+    pulls = [sum((x * y for x, y in zip(measures.coordinates.gravity, way, strict=True)), ZERO) for way in ways]
     hanging = density * length * (abs(pulls[0]) + abs(pulls[1]))
     weight = float(hanging)
     if not weight < inf or (weight == 0.0 and not is_zero(hanging)):
@@ -152,7 +153,7 @@ def _weigh(measures: Measures, z: int, density: Ball, length: Ball, pulls: list[
         table.add_load(z, -density * last * length)
         fall[z,] = density * last * length
     measures.fall = combined((ONE, measures.fall), (ONE, fall))
-    peg = sum((x * y for x, y in zip(measures.coordinates.gravity, at, strict=True)), ONE - ONE)
+    peg = sum((x * y for x, y in zip(measures.coordinates.gravity, at, strict=True)), ZERO)
     measures.potential = measures.potential - density * length * (last * length / 2 + peg)
 
 

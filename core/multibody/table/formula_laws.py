@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from itertools import starmap
 
 from core.errors import InvalidParameter, Path
-from core.formulas import Node, names_of
-from core.multibody.algebra.polynomials import ONE, Ball, Poly, coordinate, is_zero
+from core.formulas import NOTHING, Node, names_of
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, coordinate, is_zero
 from core.multibody.language.forces import AppliedForce, Damper, Field, Spring
 from core.multibody.language.motion_formulas import (
     TIME,
@@ -97,12 +97,9 @@ def add_force(
     found = []
     for i, (formula, component) in enumerate(zip(formulas, point.at, strict=True)):
         push = {key[0]: factor * x for key, x in component.items() if key}
-        if formula.root != _NOTHING:
+        if formula.root != NOTHING:
             found.append(add_law(measures, name, formula, of_place(point), push, (*path, i)))
     return found
-
-
-_NOTHING = Node("number", "0")
 
 
 def force_by_formulas(connection: AppliedForce, measures: Measures, name: str, path: Path) -> bool:
@@ -141,11 +138,11 @@ def _along_axes(
     assert point.body is not None, "a place of a body"
     if not measures.coordinates.frames[point.body].orients:
         raise InvalidParameter((*path, "in"), "be left out for a particle", remedy="give the body its inertia")
-    unit = [[ONE if i == k else ONE - ONE for i in range(measures.dimension)] for k in range(measures.dimension)]
+    unit = [[ONE if i == k else ZERO for i in range(measures.dimension)] for k in range(measures.dimension)]
     axes = [measures.coordinates.vector_of(point.body, components, path) for components in unit]
     found = []
     for k, (formula, axis) in enumerate(zip(formulas, axes, strict=True)):
-        if formula.root == _NOTHING:
+        if formula.root == NOTHING:
             continue
         for form, component in zip(axis, point.at, strict=True):
             along = Node("*", inner=(formula.root, Node("name", _AXIS)))
@@ -214,7 +211,7 @@ def field(connection: Field, measures: Measures, name: str, path: Path) -> None:
                 at, "name a body of the scene", remedy=near_and_all(body, measures.coordinates.frames, "bodies")
             )
         point = measures.coordinates.point(body, at)
-        mass = measures.table.mass.get((measures.coordinates.frames[body].position[0],) * 2, ONE - ONE)
+        mass = measures.table.mass.get((measures.coordinates.frames[body].position[0],) * 2, ZERO)
         factor = ONE if what == "force" else mass
         if not is_zero(factor):
             laws += add_force(measures, name, point, formulas, factor, where)

@@ -13,6 +13,7 @@ from core.errors import InvalidParameter, Path
 from core.formulas import Node, value_of
 from core.multibody.algebra.polynomials import (
     ONE,
+    ZERO,
     Ball,
     LinearForm,
     Poly,
@@ -40,7 +41,7 @@ def clock(measures: Measures) -> int:
     table = measures.table
     if "clock" in table.names:
         return table.names.index("clock")
-    index = table.coordinate("clock", "s", ONE - ONE)
+    index = table.coordinate("clock", "s", ZERO)
     table.rows.append(Row("clock", None, {index: constant(ONE)}, ONE))
     return index
 

@@ -6,20 +6,18 @@ from core.balls import as_text
 from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.multibody.algebra.directions import perpendicular
 from core.multibody.algebra.polynomials import ONE, ZERO, constant, difference, dot, evaluated
-from core.multibody.language.connection import TwoEnded
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.written import GROUND
 from core.multibody.table.formulas_of_time import driven
-from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, Measures
-from core.multibody.table.moving_places import place_of
+from core.multibody.table.moving_places import ends_of, require_two_bodies
 from core.multibody.table.rows import add_rows
 
 
 @add_rows.register
 def pin(connection: Pin, measures: Measures, name: str, path: Path) -> None:
     """Hold two places together, and in space the direction of an axis, if there is one."""
-    a, b = _ends(connection, measures, name, path)
+    a, b = ends_of(connection, measures, name, path)
     measures.coincide(name, a, b, path)
     if connection.axis is None:
         return
@@ -37,7 +35,7 @@ def pin(connection: Pin, measures: Measures, name: str, path: Path) -> None:
 @add_rows.register
 def ball_joint(connection: BallJoint, measures: Measures, name: str, path: Path) -> None:
     """Hold two places of space together."""
-    a, b = _ends(connection, measures, name, path)
+    a, b = ends_of(connection, measures, name, path)
     if measures.dimension == 2:
         raise InvalidParameter((*path, "kind"), 'be "pin" in the plane')
     measures.coincide(name, a, b, path)
@@ -46,7 +44,7 @@ def ball_joint(connection: BallJoint, measures: Measures, name: str, path: Path)
 @add_rows.register
 def rod(connection: Rod, measures: Measures, name: str, path: Path) -> None:
     """Hold two places at a distance."""
-    a, b = _ends(connection, measures, name, path)
+    a, b = ends_of(connection, measures, name, path)
     if connection.drive is not None and connection.length is not None:
         raise InvalidParameter((*path, "drive"), "be left out beside a length")
     drive = None if connection.drive is None else driven(measures, name, connection.drive, (*path, "drive"))
@@ -56,9 +54,9 @@ def rod(connection: Rod, measures: Measures, name: str, path: Path) -> None:
 @add_rows.register
 def slider(connection: Slider, measures: Measures, name: str, path: Path) -> None:
     """Hold a place on a line that is fixed in a body, and the orientation to that body."""
-    a, b = _ends(connection, measures, name, path)
+    a, b = ends_of(connection, measures, name, path)
     numerals, plane = measures.numerals, measures.dimension == 2
-    _two_bodies(a, b, path)
+    require_two_bodies(a, b, path)
     if connection.direction is not None and connection.slope is not None:
         raise InvalidParameter((*path, "slope"), "be left out where a direction is given")
     if connection.direction is not None:
@@ -88,7 +86,7 @@ def weld(connection: Weld, measures: Measures, name: str, path: Path) -> None:
     a = measures.coordinates.point(connection.a, (*path, "a"))
     ground = [0] * measures.dimension
     b = measures.coordinates.point(ground if connection.b == GROUND else connection.b, (*path, "b"))
-    _two_bodies(a, b, path)
+    require_two_bodies(a, b, path)
     carrier = b if b.body is not None and measures.coordinates.frames[b.body].orients else a
     other = a if carrier is b else b
     d = [difference(x, y) for x, y in zip(other.at, carrier.at, strict=True)]
@@ -105,14 +103,3 @@ def weld(connection: Weld, measures: Measures, name: str, path: Path) -> None:
 def track(connection: GuideCurve, measures: Measures, name: str, path: Path) -> None:
     """Hold a place on a curve or surface."""
     measures.on_curve(name, measures.coordinates.point(connection.place, (*path, "place")), connection.on, path)
-
-
-def _ends(connection: TwoEnded, measures: Measures, name: str, path: Path) -> tuple[Point, Point]:
-    ends = (("a", connection.a), ("b", connection.b))
-    a, b = (place_of(measures, name, place, (*path, end)) for end, place in ends)
-    return a, b
-
-
-def _two_bodies(a: Point, b: Point, path: Path) -> None:
-    if a.body == b.body:
-        raise InvalidParameter(path, "connect two different bodies, or a body and the ground")

@@ -6,32 +6,34 @@ from collections.abc import Sequence
 
 from core.balls import as_text
 from core.errors import InvalidParameter, Path, PlacesDisagree
-from core.multibody.algebra.polynomials import ONE, Ball, constant, dot
+from core.multibody.algebra.directions import scalar_product, unit
+from core.multibody.algebra.polynomials import ONE, constant, dot
 from core.multibody.language.joints import Cylindrical, Universal
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, Measures
-from core.multibody.table.moving_places import place_of
+from core.multibody.table.moving_places import ends_of, require_two_bodies
 from core.multibody.table.rows import add_rows
 
 
 @add_rows.register
 def cylindrical(connection: Cylindrical, measures: Measures, name: str, path: Path) -> None:
     """Hold a place on a line and the direction of that line in both bodies."""
-    a, b = _ends(connection, measures, name, path)
-    axis = _direction(measures, connection.axis, (*path, "axis"))
-    measures.slide(name, a, b, measures.in_body(b.body, axis), (*path, "axis"))
+    a, b = _ends_with_axes(connection, measures, name, path)
+    where = (*path, "axis")
+    axis = unit(measures.numerals.vector(connection.axis, where, 3), where)
+    measures.slide(name, a, b, measures.in_body(b.body, axis), where)
     measures.aligned(name, a.body, b.body, [axis], path)
 
 
 @add_rows.register
 def universal(connection: Universal, measures: Measures, name: str, path: Path) -> None:
     """Hold two places together, and an axis of each body at right angles; the moment on `a` is along their product."""
-    a, b = _ends(connection, measures, name, path)
+    a, b = _ends_with_axes(connection, measures, name, path)
     where = (*path, "axes")
     if isinstance(connection.axes, str) or not isinstance(connection.axes, Sequence) or len(connection.axes) != 2:
         raise InvalidParameter(where, "be two vectors: one that is fixed in a, and one in b")
-    axes = [_direction(measures, axis, (*where, i)) for i, axis in enumerate(connection.axes)]
-    off = sum((x * y for x, y in zip(*axes, strict=True)), ONE - ONE)
+    axes = [unit(measures.numerals.vector(axis, (*where, i), 3), (*where, i)) for i, axis in enumerate(connection.axes)]
+    off = scalar_product(*axes)
     if not (measures.sketch or abs(off) < CLOSE):
         raise PlacesDisagree(where, f"be at right angles, unlike two whose cosine is {as_text(off, 4)}")
     measures.coincide(name, a, b, path)
@@ -42,23 +44,14 @@ def universal(connection: Universal, measures: Measures, name: str, path: Path) 
     measures.force(f"{name}.moment", [(measures.hold(name, dot(first, second)), constant(ONE))], "N m")
 
 
-def _ends(connection: Cylindrical | Universal, measures: Measures, name: str, path: Path) -> tuple[Point, Point]:
+def _ends_with_axes(
+    connection: Cylindrical | Universal, measures: Measures, name: str, path: Path
+) -> tuple[Point, Point]:
     if measures.dimension == 2:
         raise InvalidParameter((*path, "kind"), "be that of a connection of the plane, such as pin or slider")
-    ends = (("a", connection.a), ("b", connection.b))
-    a, b = (place_of(measures, name, place, (*path, end)) for end, place in ends)
-    if a.body == b.body:
-        raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
+    a, b = ends_of(connection, measures, name, path)
+    require_two_bodies(a, b, path)
     for end, point in (("a", a), ("b", b)):
         if point.body is not None and measures.coordinates.frames[point.body].axes is None:
             raise InvalidParameter((*path, end), f'be of a body that has moments, unlike "{point.body}"')
     return a, b
-
-
-def _direction(measures: Measures, vector: object, path: Path) -> list[Ball]:
-    """Return a vector of length one."""
-    given = measures.numerals.vector(vector, path, 3)
-    square = sum((x * x for x in given), ONE - ONE)
-    if not square > 0:
-        raise InvalidParameter(path, "have a direction: be other than zero")
-    return [x / square.sqrt() for x in given]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from core.formulas import Node, names_of, value_of
+from core.formulas import NOTHING, Node, names_of, value_of
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.language.numerals import BALLS
 from core.multibody.language.switches import SWITCHING, argument_of, switches_of
@@ -89,9 +89,9 @@ class _Pieces:
         side = self._sign(law, argument_of(replace(node, inner=tuple(settled))))
         match node.kind:
             case "abs":
-                return settled[0] if side > 0 else _NOTHING if side == 0 else Node("negative", inner=(settled[0],))
+                return settled[0] if side > 0 else NOTHING if side == 0 else Node("negative", inner=(settled[0],))
             case "sign":
-                return _NOTHING if side == 0 else _ONE if side > 0 else Node("negative", inner=(_ONE,))
+                return NOTHING if side == 0 else _ONE if side > 0 else Node("negative", inner=(_ONE,))
             case "if":
                 return self._of(law, settled[1 if side > 0 else 2])
         return settled[0 if (side > 0) == (node.kind == "max") else 1]
@@ -107,7 +107,7 @@ class _Pieces:
         return found.sign
 
 
-_NOTHING, _ONE = Node("number", "0"), Node("number", "1")
+_ONE = Node("number", "1")
 
 
 def _with_root(law: Law, root: Node) -> Law:

@@ -12,6 +12,7 @@ from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.multibody.algebra.directions import perpendicular, unit
 from core.multibody.algebra.polynomials import (
     ONE,
+    ZERO,
     Ball,
     LinearForm,
     Poly,
@@ -56,7 +57,7 @@ class Measures:
         self.forces: list[Force] = []
         self.limits: list[Limit] = []
         self.works: list[WorkTerm] = []
-        self.potential = ONE - ONE
+        self.potential = ZERO
         # What has mass beside the bodies: its potential in gravity, and its momentum and angular momentum by name.
         self.fall: Poly = {}
         self.momenta: dict[str, tuple[StateFunction, StateFunction]] = {}
@@ -186,7 +187,7 @@ class Measures:
             c, s = (q[i] for i in frame.direction)
             return [c * components[0] + s * components[1], c * components[1] - s * components[0]]
         assert frame.axes is not None, "a top whose direction is held has all of its axes"
-        return [sum((q[i] * x for i, x in zip(axis, components, strict=True)), ONE - ONE) for axis in frame.axes]
+        return [sum((q[i] * x for i, x in zip(axis, components, strict=True)), ZERO) for axis in frame.axes]
 
     def unturned(self, name: str, a: Point, b: Point, path: Path) -> None:
         """Hold the orientation of one body to another."""
@@ -203,7 +204,7 @@ class Measures:
         if not axes:
             # A particle has no orientation that could be held or hold.
             return
-        unit = [[ONE if i == j else ONE - ONE for j in range(self.dimension)] for i in range(self.dimension)]
+        unit = [[ONE if i == j else ZERO for j in range(self.dimension)] for i in range(self.dimension)]
         self.aligned(name, a.body, b.body, unit[: 1 if self.dimension == 2 else 3], path)
 
     def slide(self, name: str, a: Point, b: Point, along: Sequence[Ball], path: Path) -> None:

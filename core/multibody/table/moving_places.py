@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import degree
+from core.multibody.language.connection import TwoEnded
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.formulas_of_time import driven
@@ -20,6 +21,19 @@ def place_of(measures: Measures, name: str, place: object, path: Path) -> Point:
     if isinstance(place, str) or not isinstance(place, Sequence) or len(place) != measures.dimension:
         return measures.coordinates.point(place, path)
     return Point([driven(measures, name, value, (*path, i)) for i, value in enumerate(place)], None)
+
+
+def ends_of(connection: TwoEnded, measures: Measures, name: str, path: Path) -> tuple[Point, Point]:
+    """Return the places of the two ends of a connection."""
+    ends = (("a", connection.a), ("b", connection.b))
+    a, b = (place_of(measures, name, place, (*path, end)) for end, place in ends)
+    return a, b
+
+
+def require_two_bodies(a: Point, b: Point, path: Path) -> None:
+    """Raise `InvalidParameter` for two places of one body."""
+    if a.body == b.body:
+        raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
 
 
 def driven_works(measures: Measures, name: str, first: int) -> Iterator[WorkTerm]:

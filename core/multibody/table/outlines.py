@@ -21,6 +21,7 @@ from core.errors import Path, PlacesDisagree
 from core.multibody.algebra.directions import unit
 from core.multibody.algebra.polynomials import (
     ONE,
+    ZERO,
     Ball,
     Poly,
     combined,
@@ -134,7 +135,7 @@ def _require_apart(measures: Measures, a: Side, b: Side, name: str, path: Path) 
     if a.single or b.single:
         return
     q = measures.table.q
-    deepest, scale = None, ONE - ONE
+    deepest, scale = None, ZERO
     for one, other in ((a, b), (b, a)):
         for edge in _edges(one, path):
             # What has no width is parted by a line across its ends, too.

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import (
     ONE,
+    ZERO,
     Ball,
     LinearForm,
     Poly,
@@ -39,7 +40,7 @@ def sum_of_rates(*parts: tuple[Poly, LinearForm]) -> LinearForm:
     total: LinearForm = {}
     for factor, rate in parts:
         for j, value in rate.items():
-            number = value.get((), ONE - ONE)
+            number = value.get((), ZERO)
             total[j] = combined((ONE, total.get(j, {})), (number, factor))
     return {j: poly for j, poly in total.items() if poly}
 

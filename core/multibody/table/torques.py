@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from itertools import permutations
 
 from core.errors import InvalidParameter, Path
-from core.formulas import Node
+from core.formulas import NOTHING, Node
 from core.multibody.algebra.polynomials import ONE, Ball, combined, coordinate, is_zero
 from core.multibody.language.forces import Torque
 from core.multibody.language.motion_formulas import TURNS, MotionFormula
@@ -93,7 +93,7 @@ def _by_formulas(connection: Torque, measures: Measures, name: str, frame: Frame
     laws = []
     for i, value in enumerate(connection.torque):  # type: ignore[arg-type]
         formula = written(measures, value, (), (*where, i))
-        if formula.root == Node("number", "0"):
+        if formula.root == NOTHING:
             continue
         along = MotionFormula(Node("*", inner=(formula.root, Node("name", _AXIS))), formula.names | {_AXIS})
         for _, j, k in (order for order in permutations(range(3)) if order[0] == i):

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.multibody.audit.between_places import BetweenPlaces
 from core.multibody.audit.bodies import Reader
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.joints import RodDefinition
-from core.multibody.audit.laws import Pull
 from core.multibody.audit.outlines import OnOutline
 from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, rate, with_rate
 from core.multibody.audit.strings import ChainDefinition, Straight, StringDefinition
@@ -244,7 +244,9 @@ class Mechanism:
             (name, part) for name, part, bent in self.straights if bent and (part.a.place.body or part.b.place.body)
         ]
         found = [(name, with_rate(lambda x, part=part: _span(part, x), placement, motion)) for name, part in moves]  # type: ignore[misc]
-        pulls = [one for one in self.definitions if isinstance(one, Pull)]
+        pulls = [
+            one for one in self.definitions if isinstance(one, BetweenPlaces) and not isinstance(one, RodDefinition)
+        ]
         found += [(one.name, with_rate(one.distance, placement, motion)) for one in pulls]
         return [(name, float(length), float(change)) for name, (length, change) in found]
 
