@@ -1,9 +1,8 @@
-"""Printed equations, read back, have the accelerations of the answer; what they say is conserved, is."""
+"""Printed equations, read back, have the accelerations and forces of the answer."""
 
 from __future__ import annotations
 
 import cmath
-import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -229,71 +228,6 @@ def test_printed_forces_have_the_values_of_the_answer(name: str) -> None:
             known = answer.forces.get(key)
             if known is not None and known.value is not None:
                 assert float(evaluated(formula.plain, jets).value) == pytest.approx(known.value, abs=AGREED * size), key
-
-
-LATER = 0.03
-"""Time (s) that every motion of the catalogue but those named below reaches in its first phase."""
-
-
-def later(name: str) -> tuple[Scene, SceneSolution] | None:
-    """Return a scene of the catalogue with its answer up to `LATER`, None where its first phase is shorter."""
-    scene = scene_of(scene_catalogue()[name].question)
-    answer = answer_of(scene, [0.0, LATER])
-    if answer.trajectory is None or len(answer.trajectory.time) < 2 or (answer.phases and len(answer.phases) > 1):
-        return None
-    return scene, answer
-
-
-@pytest.mark.parametrize("name", ASKED)
-def test_what_is_said_to_be_conserved_stays(name: str) -> None:
-    found = later(name)
-    if found is None:
-        return
-    scene, answer = found
-    assert answer.equations is not None
-    for row, time in enumerate((0.0, LATER)):
-        columns = columns_at(scene, answer, row)
-        jets = {key: Jet(mpmath.mpf(x)) for key, x in answer.equations.constants.items()}
-        jets["t"] = Jet(mpmath.mpf(time), mpmath.mpf(1))
-        known = {text: evaluated(text, columns | jets) for text in shown(answer, columns)}
-        jets |= {key: known[text] for key, text in answer.equations.coordinates.items() if text in known}
-        for one in answer.equations.conserved:
-            if set(names_in(one.formula.plain, answer)) <= set(jets):
-                value = float(evaluated(one.formula.plain, jets).value)
-                assert value == pytest.approx(one.value, rel=1e-7, abs=1e-7), (one.name, row)
-
-
-@pytest.mark.parametrize("name", ASKED)
-def test_closed_forms_are_the_motion(name: str) -> None:
-    found = later(name)
-    if found is None:
-        return
-    scene, answer = found
-    assert answer.equations is not None
-    columns = columns_at(scene, answer, 1)
-    jets = {key: Jet(mpmath.mpf(x)) for key, x in answer.equations.constants.items()}
-    jets["t"] = Jet(mpmath.mpf(LATER), mpmath.mpf(1))
-    for key, formula in answer.equations.closed_form.items():
-        text = answer.equations.coordinates[key]
-        if text is not None and set(names_in(text, answer)) <= {*columns, *jets}:
-            there = evaluated(text, columns | jets)
-            moved = evaluated(formula.plain, jets)
-            assert float(moved.value) == pytest.approx(float(there.value), rel=1e-10, abs=1e-10), key
-            assert float(moved.rate) == pytest.approx(float(there.rate), rel=1e-8, abs=1e-8), key
-
-
-def shown(answer: SceneSolution, columns: Mapping[str, Jet]) -> list[str]:
-    """Return the formulas of coordinates that these columns suffice for."""
-    assert answer.equations is not None
-    texts = [text for text in answer.equations.coordinates.values() if text is not None]
-    return [text for text in texts if set(names_in(text, answer)) <= {*columns, *answer.equations.constants}]
-
-
-def names_in(text: str, answer: SceneSolution) -> list[str]:
-    """Return the names in a formula, without primes."""
-    found = re.findall(r"[A-Za-z][A-Za-z0-9_]*(?:-[A-Za-z0-9_]+)*(?:\.[A-Za-z][\w-]*)*(?!\w*\()", text)
-    functions = {"sin", "cos", "sqrt", "exp", "atan2"}
-    return [name for name in found if name not in functions]
 
 
 def test_matrices_have_the_modes_of_the_places_of_rest() -> None:

@@ -1,0 +1,162 @@
+"""What equations say to be conserved is, and their closed forms are the motion, in every scene of the catalogue."""
+
+from __future__ import annotations
+
+import re
+
+import mpmath
+import pytest
+
+from core.multibody.equations_answer import SceneEquations
+from service.routes.scene_catalogue import scene_catalogue
+from tests.core.multibody.formulation.reading import Jet, evaluated
+from tests.core.multibody.formulation.test_scene_equations import ASKED, answer_of, columns_at, scene_of
+
+LATER = 0.03
+"""Time (s) that every motion of the catalogue reaches in its first phase."""
+
+CONSERVED = {
+    name: count
+    for count, names in {
+        0: """
+            backspin-returns ball-in-bowl block-on-plank block-on-plank-in-space block-on-spring-with-friction
+            block-up-rough-incline blocks-pulled centrifugal-governor coin-rolls-round coupled-pendulums
+            crank-slider damped-oscillator disc-slips-down-incline driven-duffing-oscillator fall-with-drag
+            four-bar-linkage four-legged-table kapitza-pendulum lagrange-points plank-on-two-strings
+            rattleback rod-in-cylinder rod-on-edge rope-on-bollard sleeping-top slip-to-roll
+            sphere-on-turntable stone-across-slope three-body-figure-eight
+        """,
+        1: """
+            atwood-machine atwood-machine-with-spring ball-in-cylinder ball-on-ball-dropped bead-on-hoop
+            bead-on-parabola bead-on-rotating-rod block-and-tackle block-tips-over blocks-on-incline
+            bounce-to-rest chain-off-table chain-over-peg cradle-of-two cylinder-in-cylinder
+            cylinder-on-incline disc-leaves-cylinder double-atwood-machine double-pendulum
+            double-pendulum-of-points dumbbell-dropped dumbbell-dropped-in-space elastic-pendulum
+            harmonic-ellipse inverted-pendulum-on-torsion-spring ladder-leaves-wall ladder-on-rails
+            loaded-hoop loop-with-slack-string massive-pulley movable-wedge pendulum-on-cart pendulum-timed
+            physical-pendulum rod-against-stop shafts-on-wedge simple-pendulum spool spool-rolls-away
+            spool-winds-up stone-leaves-hollow-sphere swinging-atwood-machine trammel two-masses-two-springs
+            weight-lands yo-yo
+        """,
+        2: """
+            alpha-particle asymmetric-top ball-and-stick billiard-ball blocks-count-pi conical-pendulum
+            cylinder-on-cylinder cylinder-on-movable-wedge foucault-pendulum gyroscope-with-offset-mass
+            kepler-ellipse kovalevskaya-top lagrange-top precessing-top sphere-on-incline spherical-pendulum
+            spinning-disc-bounces vibrating-dumbbell weight-under-table
+        """,
+        3: """
+            ball-bounces-with-spin dumbbell
+        """,
+        4: """
+            binary-stars thrown-body
+        """,
+    }.items()
+    for name in names.split()
+}
+"""How many quantities the equations of each scene of the catalogue show to be conserved."""
+
+CLOSED = {
+    name: count
+    for count, names in {
+        0: """
+            alpha-particle asymmetric-top atwood-machine-with-spring ball-in-bowl ball-in-cylinder
+            bead-on-hoop bead-on-parabola block-tips-over centrifugal-governor coin-rolls-round
+            conical-pendulum coupled-pendulums cradle-of-two crank-slider cylinder-in-cylinder
+            cylinder-on-cylinder disc-leaves-cylinder double-pendulum double-pendulum-of-points
+            driven-duffing-oscillator elastic-pendulum fall-with-drag foucault-pendulum four-bar-linkage
+            four-legged-table gyroscope-with-offset-mass inverted-pendulum-on-torsion-spring kapitza-pendulum
+            kepler-ellipse kovalevskaya-top ladder-leaves-wall ladder-on-rails lagrange-points lagrange-top
+            loaded-hoop loop-with-slack-string pendulum-on-cart pendulum-timed physical-pendulum
+            plank-on-two-strings precessing-top rattleback rod-against-stop rod-in-cylinder rod-on-edge
+            simple-pendulum sleeping-top sphere-on-turntable spherical-pendulum stone-across-slope
+            stone-leaves-hollow-sphere swinging-atwood-machine three-body-figure-eight trammel
+            vibrating-dumbbell weight-under-table
+        """,
+        1: """
+            atwood-machine ball-and-stick ball-on-ball-dropped bead-on-rotating-rod block-and-tackle
+            blocks-count-pi blocks-on-incline bounce-to-rest chain-off-table chain-over-peg
+            cylinder-on-incline damped-oscillator dumbbell-dropped dumbbell-dropped-in-space massive-pulley
+            spool spool-rolls-away spool-winds-up weight-lands yo-yo
+        """,
+        2: """
+            binary-stars block-on-spring-with-friction block-up-rough-incline cylinder-on-movable-wedge
+            double-atwood-machine harmonic-ellipse movable-wedge rope-on-bollard sphere-on-incline
+            spinning-disc-bounces two-masses-two-springs
+        """,
+        3: """
+            backspin-returns ball-bounces-with-spin block-on-plank block-on-plank-in-space
+            disc-slips-down-incline dumbbell shafts-on-wedge slip-to-roll thrown-body
+        """,
+        4: """
+            blocks-pulled
+        """,
+        6: """
+            billiard-ball
+        """,
+    }.items()
+    for name in names.split()
+}
+"""How many coordinates of each are elementary functions of the time."""
+
+UNSEEN = {"ball-bounces-with-spin": (2, 1), "lagrange-top": (2, 0), "precessing-top": (2, 0)}
+"""Of how many of both no column shows, at a later time, the rates on which they depend."""
+
+
+def later(name: str) -> tuple[SceneEquations, dict[str, Jet], dict[str, Jet]]:
+    """Return the equations of a scene of the catalogue, its columns at `LATER`, and the time and constants."""
+    scene = scene_of(scene_catalogue()[name].question)
+    answer = answer_of(scene, [0.0, LATER])
+    assert answer.equations is not None
+    assert answer.trajectory is not None
+    assert len(answer.trajectory.time) == 2
+    assert not answer.phases or len(answer.phases) == 1
+    known = {key: Jet(mpmath.mpf(x)) for key, x in answer.equations.constants.items()}
+    known["t"] = Jet(mpmath.mpf(LATER), mpmath.mpf(1))
+    return answer.equations, columns_at(scene, answer, 1), known
+
+
+def test_every_scene_of_the_catalogue_is_expected_to_conserve_something_or_nothing() -> None:
+    assert sorted(CONSERVED) == sorted(CLOSED) == ASKED
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_what_is_said_to_be_conserved_stays(name: str) -> None:
+    equations, columns, jets = later(name)
+    for key, text in equations.coordinates.items():
+        if text is None and key in columns:
+            jets[key] = columns[key]
+        elif text is not None and names_in(text) <= {*columns, *jets}:
+            jets[key] = evaluated(text, columns | jets)
+    compared = 0
+    for one in equations.conserved:
+        if names_in(one.formula.plain) <= set(jets):
+            compared += 1
+            value = float(evaluated(one.formula.plain, jets).value)
+            assert value == pytest.approx(one.value, rel=1e-7, abs=1e-7), one.name
+    assert len(equations.conserved) == CONSERVED[name]
+    assert compared == CONSERVED[name] - UNSEEN.get(name, (0, 0))[0]
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_closed_forms_are_the_motion(name: str) -> None:
+    equations, columns, jets = later(name)
+    compared = 0
+    for key, formula in equations.closed_form.items():
+        text, moved = equations.coordinates[key], evaluated(formula.plain, jets)
+        if text is None:
+            # Of a turn about an axis of space columns show the rate alone.
+            there = columns.get(key)
+        else:
+            there = evaluated(text, columns | jets)
+            assert float(moved.value) == pytest.approx(float(there.value), rel=1e-10, abs=1e-10), key
+        if there is not None:
+            compared += 1
+            assert float(moved.rate) == pytest.approx(float(there.rate), rel=1e-8, abs=1e-8), key
+    assert len(equations.closed_form) == CLOSED[name]
+    assert compared == CLOSED[name] - UNSEEN.get(name, (0, 0))[1]
+
+
+def names_in(text: str) -> set[str]:
+    """Return the names in a formula, without primes."""
+    found = re.findall(r"(?<![\w.])[A-Za-z][A-Za-z0-9_]*(?:-[A-Za-z0-9_]+)*(?:\.[A-Za-z][\w-]*)*(?!\w*\()", text)
+    return {*found} - {"sin", "cos", "sqrt", "exp", "atan2"}
