@@ -51,11 +51,6 @@ class ExactInertia:
             raise InvalidParameter("moments", "have at most one moment of 0 kg m^2", remedy=THIN_ROD)
         return cls(((a, zero, zero), (zero, b, zero), (zero, zero, c)))
 
-    @classmethod
-    def of_tensor(cls, tensor: Sequence[Sequence[Number]]) -> ExactInertia:
-        """Return a body given by its tensor, shape (3, 3), off-diagonal components -(integral of x y dm)."""
-        return cls(symmetric(tensor))
-
     @property
     def is_line(self) -> bool:
         """Whether one moment is zero: matter along a line, which can only turn across itself."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 FENCE = re.compile(r"^```([a-z-]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 ENDPOINT = re.compile(r"`POST (/v1/[a-z/-]+)`")
-UNTESTED = re.compile(r"^# not tested: (.+)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -31,12 +30,6 @@ class Block:
         """Path of the endpoint that the prose named last, if any."""
         named = ENDPOINT.findall(self.prose)
         return named[-1] if named else None
-
-    @property
-    def untested(self) -> str | None:
-        """Why no test runs the block, if its first line says so."""
-        reason = UNTESTED.match(self.code)
-        return reason[1] if reason else None
 
 
 def blocks(text: str) -> Iterator[Block]:

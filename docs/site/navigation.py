@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -86,15 +85,6 @@ def pages() -> dict[str, Path]:
     """Return the source of every page that is written by hand, by its path on the site."""
     found = {str(page.relative_to(DOCS)): page for page in sorted(DOCS.rglob("*.md"))}
     return found | {target: ROOT / source for source, target in PAGES_ELSEWHERE.items()}
-
-
-def paths_in(entry: Any) -> Iterator[str]:
-    """Yield the paths of a navigation."""
-    if isinstance(entry, str):
-        yield entry
-    else:
-        for inner in entry.values() if isinstance(entry, dict) else entry:
-            yield from paths_in(inner)
 
 
 def _exists(path: str) -> bool:

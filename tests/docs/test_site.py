@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,13 +15,22 @@ from docs.site import thumbnails
 from docs.site.__main__ import write
 from docs.site.figures import FIGURES, FOLDER, polhodes
 from docs.site.links import linked_files, moved
-from docs.site.navigation import DOCS, GENERATED, ROOT, navigation, pages, paths_in
+from docs.site.navigation import DOCS, GENERATED, ROOT, navigation, pages
 from docs.site.reference import reference
 from docs.site.thumbnails import answer_of, thumbnail
 from service.problems import REGISTRY
 from service.settings import Settings
 
 NUMBER = re.compile(r"-?\d+\.\d+")
+
+
+def paths_in(entry: Any) -> Iterator[str]:
+    """Yield the paths of a navigation."""
+    if isinstance(entry, str):
+        yield entry
+    else:
+        for inner in entry.values() if isinstance(entry, dict) else entry:
+            yield from paths_in(inner)
 
 
 def test_every_page_has_one_place_in_the_navigation() -> None:

@@ -35,7 +35,7 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.methods import ExplicitEuler, RungeKutta4
 from core.systems.solve import solve
 from core.work_precision import work_precision
-from tests.core.certified.judge import OWN_ERROR, _distance
+from tests.core.certified.judge import OWN_ERROR, distance_of_rows
 from tests.drawn import draws
 
 DIGITS = 40
@@ -94,12 +94,12 @@ def judged(motion: FreeRotation, judge: CertifiedRotation, times: Sequence[float
     got, stated = motion.sample(instants), motion.error(instants)
     rates, attitudes = judge.trajectory(list(times), DIGITS)
     largest = Fraction(judge.largest_rate(DIGITS))
-    error = float(_distance(got, rates) / largest) if largest else 0.0
+    error = float(distance_of_rows(got, rates) / largest) if largest else 0.0
     assert error <= stated + OWN_ERROR
     turning = FreeAttitude(motion, np.array([1.0, 0.0, 0.0, 0.0]))
     turned = turning.error(instants)
     if turned < math.pi:
-        assert 2.0 * float(_distance(turning.sample(instants), attitudes)) <= turned + OWN_ERROR
+        assert 2.0 * float(distance_of_rows(turning.sample(instants), attitudes)) <= turned + OWN_ERROR
     return error, stated
 
 

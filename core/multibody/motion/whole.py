@@ -75,7 +75,7 @@ class Whole:
     @cached_property
     def arrays(self) -> tuple[Packed, Units, list[int]]:
         """The table as described for compiled code, its units, and the rows that it holds."""
-        table, chosen = self._with_mass(), self.independent_rows
+        table, chosen = self._with_mass(), self.lasting_rows
         units = units_of(table, self.acceleration)
         return packed(table, chosen, units), units, chosen
 
@@ -116,7 +116,7 @@ class Whole:
         return self._packed[parts]
 
     @cached_property
-    def independent_rows(self) -> list[int]:
+    def lasting_rows(self) -> list[int]:
         """Rows of the table as described on which all others depend, in order.
 
         What holds as long as the scene lasts and has the same line everywhere comes first: what it leaves to others it

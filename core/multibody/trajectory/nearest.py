@@ -74,7 +74,7 @@ class Nearest:
             [arb(float(high), _WIDER * float(error)) + arb(float(low)) for (high, low), error in zip(x, y, strict=True)]
             for x, y in ((states.q[s], states.q_error[s]), (states.v[s], states.v_error[s]))
         )
-        return _State(replace(table, q=q, v=v), self.columns.whole.independent_rows)
+        return _State(replace(table, q=q, v=v), self.columns.whole.lasting_rows)
 
 
 @dataclass(frozen=True)

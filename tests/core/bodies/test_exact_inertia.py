@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from core.bodies.exact_inertia import ExactInertia, cross, of_matter
 from core.bodies.exact_mass import ExactMass
 from core.errors import InvalidParameter
+from tests.core.bodies.exact_tensors import of_tensor
 
 small = st.integers(-9, 9)
 
@@ -31,10 +32,10 @@ def test_moments_are_roots_of_the_cubic(points):
 
 
 def test_a_double_moment_is_recognised_in_oblique_axes():
-    inertia = ExactInertia.of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, 2]])
+    inertia = of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, 2]])
     assert inertia.rational_moments == (1, 1, 4)
     assert inertia.equal_moments == 2
-    missed = ExactInertia.of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, "2.0000000000000000000000000000001"]])
+    missed = of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, "2.0000000000000000000000000000001"]])
     assert missed.rational_moments is None
     assert missed.equal_moments == 1
     assert ExactInertia.of_moments(["0.3", "0.3", "0.3"]).equal_moments == 3
@@ -47,11 +48,11 @@ def test_a_double_moment_is_recognised_in_oblique_axes():
         (lambda: ExactInertia.of_moments([0, "0", 1]), ("moments",)),
         (lambda: ExactInertia.of_moments([1, 2]), ("moments",)),
         (lambda: ExactInertia.of_moments([1, 2, "x"]), ("moments", 2)),
-        (lambda: ExactInertia.of_tensor([[1, 2, 0], [2, 1, 0], [0, 0, 1]]), ()),
-        (lambda: ExactInertia.of_tensor([[1, 0.1, 0], [0.2, 1, 0], [0, 0, 1]]), ("tensor", 1, 0)),
-        (lambda: ExactInertia.of_tensor([[1, 0], [0, 1]]), ("tensor",)),
+        (lambda: of_tensor([[1, 2, 0], [2, 1, 0], [0, 0, 1]]), ()),
+        (lambda: of_tensor([[1, 0.1, 0], [0.2, 1, 0], [0, 0, 1]]), ("tensor", 1, 0)),
+        (lambda: of_tensor([[1, 0], [0, 1]]), ("tensor",)),
         (lambda: ExactMass.of_point_masses(1, [(0, 0, 0), (0, 0, 0)]).of_motion, ()),
-        (lambda: ExactInertia.of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, "-1e-300"]]), ()),
+        (lambda: of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, "-1e-300"]]), ()),
         (lambda: ExactMass.of_point_masses(1, [(0, 0, 0), (1, 1, 1)]).of_motion.require_extent(), ("body",)),
         (lambda: ExactMass.of_point_masses([1, -1], [(0, 0, 0), (1, 1, 1)]), ("masses", 1)),
         (lambda: ExactMass.of_point_masses([1], [(0, 0, 0), (1, 1, 1)]), ("masses",)),
@@ -65,7 +66,7 @@ def test_what_is_no_body_is_refused(build, path):
 
 
 def test_momentum_and_cross_product():
-    inertia = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
+    inertia = of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
     assert inertia.momentum((Fraction(1), Fraction(2), Fraction(3))) == (4, 7, 15)
     assert cross((Fraction(1), Fraction(0), Fraction(0)), (Fraction(0), Fraction(1), Fraction(0))) == (0, 0, 1)
 
@@ -89,6 +90,6 @@ def test_symmetry_and_the_triangle_of_moments_are_decided_exactly(moments, symme
     (a, _, _), (_, b, _), (_, _, c) = inertia.tensor
     s, t = Fraction(3, 5), Fraction(4, 5)
     turned = ((s * s * a + t * t * b, s * t * (a - b), 0), (s * t * (a - b), t * t * a + s * s * b, 0), (0, 0, c))
-    same = ExactInertia.of_tensor(turned)
+    same = of_tensor(turned)
     assert of_matter(same.tensor) == physical
     assert same.symmetry == symmetry

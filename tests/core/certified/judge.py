@@ -67,17 +67,17 @@ def judged(case: Case, family: str = "named") -> Verdict | None:
         return None
     rates, attitudes = certified.trajectory(case.times, DIGITS, start)
     largest = Fraction(certified.largest_rate(DIGITS))
-    error = float(_distance(got, rates) / largest) if largest else float(_distance(got, rates))
+    error = float(distance_of_rows(got, rates) / largest) if largest else float(distance_of_rows(got, rates))
     turning = FreeAttitude(motion, np.array(start))
     try:
         found, bound = turning.sample(times), turning.error(times)
     except AccuracyUnreachable:
         return Verdict(case.name, family, error, stated, None, None)
     # Twice the distance of two unit quaternions is the most that one of them turns a unit vector away from the other's.
-    return Verdict(case.name, family, error, stated, 2 * float(_distance(found, attitudes)), bound)
+    return Verdict(case.name, family, error, stated, 2 * float(distance_of_rows(found, attitudes)), bound)
 
 
-def _distance(got: np.ndarray, want: list[list[str]]) -> Fraction:
+def distance_of_rows(got: np.ndarray, want: list[list[str]]) -> Fraction:
     """Return the largest norm of the difference of rows, to 30 digits or so."""
     largest = Fraction(0)
     for row, numerals in zip(got, want, strict=True):

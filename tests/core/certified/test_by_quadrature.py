@@ -10,10 +10,10 @@ from fractions import Fraction
 import pytest
 from mpmath import ellipfun, mp, mpf
 
-from core.bodies.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.certified.stability import certified_stability
+from tests.core.bodies.exact_tensors import of_tensor
 from tests.oracles.free_rotation import reference_angular_velocity, reference_attitude
 from tests.oracles.taylor import integrate, rigid_body
 
@@ -134,7 +134,7 @@ def test_in_the_middle_of_a_turn_after_long_rest(rates):
 
 def test_flips_of_irrational_moments_by_the_trapezoidal_rule():
     tensor = [[2, 1, 0], [1, 3, 1], [0, 1, 5]]
-    flip = certified_stability(ExactInertia.of_tensor(tensor), "0.7", 40, ("1e-30", "0.2")).flip
+    flip = certified_stability(of_tensor(tensor), "0.7", 40, ("1e-30", "0.2")).flip
     with mp.workdps(55):
         a, b, c = sorted(mp.eigsy(mp.matrix(tensor), eigvals_only=True))
         w = mpf("1e-30"), mpf("0.7"), mpf("0.2")

@@ -7,9 +7,10 @@ from core.bodies.exact_inertia import ExactInertia
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import BudgetExceeded, InvalidParameter
+from tests.core.bodies.exact_tensors import of_tensor
 
-OBLIQUE = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 1], [0, 1, 5]])
-TURNED_COIN = ExactInertia.of_tensor([["1.5", "0.5", 0], ["0.5", "1.5", 0], [0, 0, 1]])
+OBLIQUE = of_tensor([[2, 1, 0], [1, 3, 1], [0, 1, 5]])
+TURNED_COIN = of_tensor([["1.5", "0.5", 0], ["0.5", "1.5", 0], [0, 0, 1]])
 STARTS = [
     (ExactInertia.of_moments([1, 2, 3]), ("0.1", "1", "0.1")),
     (ExactInertia.of_moments([3, 1, 2]), ("0.1", "-1", "0.1")),
@@ -125,7 +126,7 @@ def test_equal_moments_leave_no_separatrix():
         (lambda i: CertifiedEllipsoid.of(i, 1).polhode([0, 1, 1], 10**6, 16), BudgetExceeded, ("points",)),
         (lambda i: CertifiedEllipsoid.of(i, 1).polhode([0, 1, 1], 10**5, 16), BudgetExceeded, ("digits",)),
         (
-            lambda i: CertifiedEllipsoid.of(ExactInertia.of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, 0]]), 1),
+            lambda i: CertifiedEllipsoid.of(of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, 0]]), 1),
             InvalidParameter,
             ("body",),
         ),

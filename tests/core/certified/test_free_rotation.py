@@ -7,10 +7,10 @@ import pytest
 from mpmath import mp, mpf
 
 from core.bodies.exact import rotated, rotation
-from core.bodies.exact_inertia import ExactInertia
 from core.bodies.exact_mass import ExactMass
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import BudgetExceeded, InvalidParameter
+from tests.core.bodies.exact_tensors import of_tensor
 from tests.drawn import sampled
 from tests.oracles.cases import Case, cases
 from tests.oracles.free_rotation import (
@@ -125,9 +125,7 @@ def test_oblique_axes_change_the_description_not_the_motion(moments, rates, turn
     matrix = rotation(turn)
     tensor = rotated(plain.inertia.tensor, matrix)
     w = [Fraction(x) for x in rates]
-    seen = CertifiedRotation.of(
-        ExactInertia.of_tensor(tensor), [sum(r * x for r, x in zip(row, w, strict=True)) for row in matrix]
-    )
+    seen = CertifiedRotation.of(of_tensor(tensor), [sum(r * x for r, x in zip(row, w, strict=True)) for row in matrix])
     rates_plain, attitudes = plain.trajectory(times, 60, (1, 0, 0, 0))
     rates_seen, attitudes_seen = seen.trajectory(times, 50, (1, 0, 0, 0))
     for a, b in zip(rates_plain, rates_seen, strict=True):
@@ -146,7 +144,7 @@ def test_oblique_axes_change_the_description_not_the_motion(moments, rates, turn
 
 def test_irrational_moments_conserve_energy_and_momentum_in_space():
     tensor = [["2", "1", "1"], ["1", "3", "0.5"], ["1", "0.5", "4"]]
-    motion = CertifiedRotation.of(ExactInertia.of_tensor(tensor), ["0.1", "1", "0.3"])
+    motion = CertifiedRotation.of(of_tensor(tensor), ["0.1", "1", "0.3"])
     assert motion.inertia.rational_moments is None
     exact = [[Fraction(x) for x in row] for row in tensor]
     for w, q in zip(*motion.trajectory(["0.5", "-20", "1e9"], 60), strict=True):

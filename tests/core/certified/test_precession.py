@@ -7,6 +7,7 @@ from core.bodies.exact import rotated, rotation
 from core.bodies.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
+from tests.core.bodies.exact_tensors import of_tensor
 from tests.drawn import sampled
 from tests.oracles.cases import Case, cases
 from tests.oracles.free_rotation import precession_per_period
@@ -42,7 +43,7 @@ def test_symmetric_bodies(moments, rates, body_rate, oblique):
     inertia = ExactInertia.of_moments(moments)
     if oblique:
         matrix = rotation((10, 1, -1, 2))
-        inertia = ExactInertia.of_tensor(rotated(inertia.tensor, matrix))
+        inertia = of_tensor(rotated(inertia.tensor, matrix))
         seen = [sum(r * x for r, x in zip(row, w, strict=True)) for row in matrix]
     else:
         seen = w

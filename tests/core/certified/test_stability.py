@@ -7,6 +7,7 @@ from core.bodies.exact import rotated, rotation
 from core.bodies.exact_inertia import ExactInertia
 from core.certified.stability import certified_stability
 from core.errors import InvalidParameter, NotApplicable
+from tests.core.bodies.exact_tensors import of_tensor
 
 
 @pytest.mark.parametrize("oblique", [False, True])
@@ -14,7 +15,7 @@ def test_eigenvalues_are_those_of_the_linearised_equations(oblique):
     moments, rate = [Fraction(x) for x in ("1.5", "2", "3.1")], Fraction("0.7")
     inertia = ExactInertia.of_moments(moments)
     if oblique:
-        inertia = ExactInertia.of_tensor(rotated(inertia.tensor, rotation((1, 2, 3, 4))))
+        inertia = of_tensor(rotated(inertia.tensor, rotation((1, 2, 3, 4))))
     found = certified_stability(inertia, "-0.7", 40).equilibria[:3]
     assert [e.kind for e in found] == ["center", "saddle", "center"]
     with mp.workdps(50):
@@ -41,7 +42,7 @@ def rate_of(equilibrium):
 
 
 def test_irrational_moments():
-    found = certified_stability(ExactInertia.of_tensor([[2, 1, 0], [1, 3, 1], [0, 1, 5]]), 1, 30).equilibria[:3]
+    found = certified_stability(of_tensor([[2, 1, 0], [1, 3, 1], [0, 1, 5]]), 1, 30).equilibria[:3]
     total = sum(Fraction(e.moment) for e in found)
     assert abs(total - 10) < Fraction(1, 10**28)
     assert [e.kind for e in found] == ["center", "saddle", "center"]
@@ -80,12 +81,12 @@ def test_flips_of_oblique_axes_are_those_of_principal_ones():
     """Moments 1, 3, 5 along turned axes, which the tensor does not show to be rational, against the exact ones."""
     tensor = [[2, 1, 0], [1, 2, 0], [0, 0, 5]]
     for disturbance in (("0.1", "0.2"), ("0.2", "0.1"), ("1e-40", 0), (0, "-1e-40")):
-        oblique = certified_stability(ExactInertia.of_tensor(tensor), "0.7", 40, disturbance).flip
+        oblique = certified_stability(of_tensor(tensor), "0.7", 40, disturbance).flip
         plain = certified_stability(ExactInertia.of_moments([1, 3, 5]), "0.7", 40, disturbance).flip
         assert oblique == plain
         assert oblique.interval is not None
     for rate, disturbance in ((1, (0, 0)), (0, (0, 1)), (0, (0, 0))):
-        still = certified_stability(ExactInertia.of_tensor(tensor), rate, 40, disturbance).flip
+        still = certified_stability(of_tensor(tensor), rate, 40, disturbance).flip
         assert still.interval is None
         assert still.reason.startswith("it never turns over")
     with pytest.raises(NotApplicable):
@@ -94,7 +95,7 @@ def test_flips_of_oblique_axes_are_those_of_principal_ones():
 
 def test_axes_are_unit_eigenvectors_on_the_positive_side():
     tensor = [["2", "1", "1"], ["1", "3", "0.5"], ["1", "0.5", "4"]]
-    for equilibrium in certified_stability(ExactInertia.of_tensor(tensor), 1, 40).equilibria[:3]:
+    for equilibrium in certified_stability(of_tensor(tensor), 1, 40).equilibria[:3]:
         axis = [Fraction(x) for x in equilibrium.axis]
         assert abs(sum(x * x for x in axis) - 1) < Fraction(1, 10**39)
         assert max(axis, key=abs) > 0
@@ -102,10 +103,10 @@ def test_axes_are_unit_eigenvectors_on_the_positive_side():
             image = sum(Fraction(i) * y for i, y in zip(row, axis, strict=True))
             assert abs(image - Fraction(equilibrium.moment) * x) < Fraction(1, 10**37)
     # Equally near to two body axes: the first counts.
-    along = certified_stability(ExactInertia.of_tensor([[2, 1, 0], [1, 2, 0], [0, 0, 5]]), 1, 16).equilibria
+    along = certified_stability(of_tensor([[2, 1, 0], [1, 2, 0], [0, 0, 5]]), 1, 16).equilibria
     assert along[0].axis == ["0.7071067811865475", "-0.7071067811865475", "0"]
 
 
 def test_matter_along_a_line_has_no_equilibria_of_free_rotation():
     with pytest.raises(InvalidParameter):
-        certified_stability(ExactInertia.of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, 0]]), 1, 16)
+        certified_stability(of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, 0]]), 1, 16)

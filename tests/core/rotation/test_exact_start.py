@@ -9,6 +9,7 @@ from core.balls import precision
 from core.bodies.exact import rotated, rotation
 from core.bodies.exact_inertia import ExactInertia
 from core.rotation.exact_start import ExactStart
+from tests.core.bodies.exact_tensors import of_tensor
 from tests.drawn import draws
 
 OBLIQUE = [[2, 1, 1], [1, 3, "0.5"], [1, "0.5", 4]]
@@ -43,7 +44,7 @@ def test_regime_and_circled_axis_are_decided_exactly(moments, rates, regime, sid
     w = [Fraction(x) for x in rates]
     if turned is not None:
         matrix = rotation(turned)
-        inertia = ExactInertia.of_tensor(rotated(inertia.tensor, matrix))
+        inertia = of_tensor(rotated(inertia.tensor, matrix))
         w = [sum(r * x for r, x in zip(row, w, strict=True)) for row in matrix]
     found = start(inertia, w)
     assert found.regime == regime
@@ -54,7 +55,7 @@ def test_regime_and_circled_axis_are_decided_exactly(moments, rates, regime, sid
 @settings(deadline=None, derandomize=True, max_examples=draws(60))
 @given(st.tuples(*[st.integers(-9, 9)] * 3))
 def test_principal_axes_diagonalise(rates):
-    inertia = ExactInertia.of_tensor(OBLIQUE)
+    inertia = of_tensor(OBLIQUE)
     with precision(200):
         state = start(inertia, rates).principal_state()
     axes = np.array([[float(x) for x in row] for row in state.axes])
@@ -67,7 +68,7 @@ def test_principal_axes_diagonalise(rates):
 
 @pytest.mark.parametrize("rates", [(1, 2, 3), (3, 0, 1), (-1, "0.5", 0)])
 def test_symmetric_bodies_in_oblique_axes(rates):
-    inertia = ExactInertia.of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, 2]])
+    inertia = of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, 2]])
     with precision(200):
         state = start(inertia, rates).principal_state()
     assert state.gaps[0].is_zero()
@@ -92,7 +93,7 @@ def test_body_axes_that_are_principal_are_only_sorted():
 @pytest.mark.parametrize("tensor", [OBLIQUE, [[14, 0, 0], [0, 21, 0], [0, 0, 24]]], ids=["irrational", "rational"])
 def test_the_middle_axis_comes_within_45_degrees_where_energy_and_momentum_say_so(tensor):
     """Where it comes nearest, the other axis that the momentum does not circle has no rate: two equations in two."""
-    inertia, found = ExactInertia.of_tensor(tensor), set()
+    inertia, found = of_tensor(tensor), set()
     moments, axes = np.linalg.eigh(np.array(tensor, dtype=float))
     for rates in [(i, j, k) for i in (-9, 1, 4) for j in (-2, 0, 5) for k in (-4, 1, 3)]:
         motion = start(inertia, rates)

@@ -12,12 +12,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.bodies.exact_inertia import ExactInertia
 from core.bodies.measured import InertiaTensor, PrincipalMoments
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.precession import certified_precession
 from core.rotation.precession.precession import Precession, precession
 from core.rotation.torque_free import TorqueFree
+from tests.core.bodies.exact_tensors import of_tensor
 from tests.drawn import draws
 
 ANGLE = 4 * 2.0**-52
@@ -117,7 +117,7 @@ def test_a_turned_body_tilts_as_the_same_body_along_its_axes(moments: list[float
     rows: Any = tuple(tuple(row) for row in tensor.tolist())
     turned = precession(InertiaTensor(rows).mass_properties(), tuple(start.tolist()))
     plain = answer(moments, spin)
-    exact = CertifiedRotation.of(ExactInertia.of_tensor(tensor.tolist()), start.tolist())
+    exact = CertifiedRotation.of(of_tensor(tensor.tolist()), start.tolist())
     assert turned.tumbles == plain.tumbles == exact.tumbles
     proven = exact.middle_axis_tilt(20)
     if plain.middle_axis_tilt is None:
@@ -165,7 +165,7 @@ def test_45_degrees_exactly_is_no_tumbling() -> None:
     # The same turned, its moments the roots of a cubic.
     tensor = np.round(9 * TURN @ np.diag([1.0, 2.0, 3.0]) @ TURN.T).tolist()
     start = np.round(3 * TURN @ np.array([0.0, 3.0, 2.0])).tolist()
-    assert CertifiedRotation.of(ExactInertia.of_tensor(tensor), start).tumbles is False
+    assert CertifiedRotation.of(of_tensor(tensor), start).tumbles is False
 
 
 def test_the_separatrix_tends_to_both_ends() -> None:

@@ -19,6 +19,7 @@ from core.errors import InvalidParameter, NotApplicable
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.precession import precession
 from core.rotation.stability.stability import stability
+from tests.core.bodies.exact_tensors import of_tensor
 from tests.drawn import draws
 from tests.oracles.cases import T_HANDLE
 from tests.oracles.free_rotation import flip_interval
@@ -220,7 +221,7 @@ def test_a_flip_is_said_of_a_body_that_turns_over_and_of_no_other(disturbance, t
     assert ("never turns over" in flip.reason) != turns_over
     exact = certified_stability(ExactInertia.of_moments((1, 2, 3)), 2, 20, disturbance).flip
     assert exact.reason.split(";")[0] == flip.reason.split(";")[0]
-    oblique = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
+    oblique = of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
     assert certified_stability(oblique, 2, 20, disturbance).flip.reason.startswith("it turns") == turns_over
 
 
@@ -267,4 +268,4 @@ def test_errors_of_derived_moments_bound_the_distance_from_proven_digits(points,
     if np.linalg.matrix_rank(np.array(points)) < 2:
         return
     body = PointMasses(1.0, [list(p) for p in points], "origin").mass_properties()
-    assert bounded(body, ExactInertia.of_tensor(tensor), rate) >= 8
+    assert bounded(body, of_tensor(tensor), rate) >= 8
