@@ -15,6 +15,10 @@ from core.errors import Path
 ONE_ERROR = ("value", "values", "time", "least", "largest")
 """Figures of objects whose `error` is that of these alone."""
 
+OF_PROJECTIONS = 6.0
+"""How far an entry of a projection on at most three axes may be off, over that of their components: a projection is
+the sum of the products of each unit vector with itself, and either factor of a product may be wrong."""
+
 ALONG = 1e-9
 """By how much the component of a unit vector along a body axis may miss 1."""
 
@@ -48,8 +52,7 @@ def _reached(answer: Any, path: Path) -> Any:
 def distance_of(bare: Reference, bound: float | Floats) -> float:
     """Return how far a figure is from the true one, as its form measures it, if its entries are wrong by `bound`."""
     wrong = float(np.max(bound))
-    # A projection is the product of a unit vector with itself.
-    return 6.0 * wrong if bare.form in ("axes", "direction") else wrong
+    return OF_PROJECTIONS * wrong if bare.form in ("axes", "direction") else wrong
 
 
 def body_axis_of(answer: Mapping[str, Any], path: Path) -> int | None:

@@ -19,7 +19,12 @@ Terms = list[tuple[float, tuple[int, ...]]]
 
 
 _DEPENDENT = 1e-9
-"""Share of the largest below which doubles take singular values, and what shares do to tensions, for zero."""
+"""Share of the largest below which doubles take singular values, and what shares do to tensions, for zero: far
+above what rounding leaves of zero, about 1e-15, and far below what rows have that do not depend on one another."""
+
+_LOOSE = 1e-9
+"""Share of the largest load down to which a negative tension is taken for zero: a string may be straight and bear
+nothing."""
 
 
 @dataclass(frozen=True)
@@ -86,8 +91,8 @@ class RestingPlaces:
         for (i, j), value in table.stiffness.items():
             load[i] -= float(value) * place[j]
         scale = np.abs(lines).max(axis=1)
-        multipliers = np.linalg.lstsq((lines / scale[:, None]).T, -load, rcond=1e-12)[0] / scale
-        edge = -1e-9 * float(np.max(np.abs(load), initial=0.0))
+        multipliers = np.linalg.lstsq((lines / scale[:, None]).T, -load, rcond=_DEPENDENT)[0] / scale
+        edge = -_LOOSE * float(np.max(np.abs(load), initial=0.0))
 
         def along(values: Floats) -> Floats:
             return np.array(
