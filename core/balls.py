@@ -38,6 +38,19 @@ def distance_bound(ball: arb, value: float) -> float | None:
     return bound if isfinite(bound) else None
 
 
+def raised(ball: arb, exponent: arb | int) -> arb:
+    """Return a power of a ball; a whole power by multiplication, as the library's is no number around zero."""
+    exponent = arb(exponent)
+    only = exponent.unique_fmpz()
+    if only is None or not exponent.is_integer():
+        return ball**exponent
+    whole = int(only)
+    found = arb(1)
+    for bit in bin(abs(whole))[2:]:
+        found = found * found * ball if bit == "1" else found * found
+    return 1 / found if whole < 0 else found
+
+
 # Held while the precision is changed, so that no thread computes at the precision of another.
 _precision_lock = RLock()
 

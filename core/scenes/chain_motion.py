@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from core.arrays import Floats
+from core.balls import raised
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, sign, square_root
 from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
@@ -81,7 +82,7 @@ class Slide:
     def velocity_squared(self, x: Ball) -> Ball:
         """Return x'^2 at x, negative where the motion does not come."""
         gone = x - self.position
-        return self.velocity**2 + gone * (2 * self.acceleration + self.square * gone)
+        return raised(self.velocity, 2) + gone * (2 * self.acceleration + self.square * gone)
 
     def grip(self) -> tuple[Ball, Ball, Ball]:
         """Return T - rho x'^2 as a quadratic in the displacement from the given position: coefficients of 2, 1, 0."""
@@ -91,7 +92,7 @@ class Slide:
         return (
             -2 * rho * self.square,
             unit * rho * (right - left) - 2 * rho * self.acceleration,
-            unit * left * right - rho * self.velocity**2,
+            unit * left * right - rho * raised(self.velocity, 2),
         )
 
     def reversed(self) -> Slide:
@@ -151,7 +152,7 @@ class Slide:
 
     def _barrier(self) -> int:
         """Return the sign of (k x')^2 - x''^2: negative for motions that turn, positive if they pass equilibrium."""
-        return sign(self.square * self.velocity**2 - self.acceleration**2)
+        return sign(self.square * raised(self.velocity, 2) - raised(self.acceleration, 2))
 
     def _reaches(self, goal: Ball, way: int) -> bool:
         """Whether the chain comes to the goal, which lies the way it moves, without turning first."""

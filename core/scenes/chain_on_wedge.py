@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Generic, Literal
 
+from core.balls import raised
 from core.errors import InvalidParameter
 from core.quantities import Acceleration, Length, LengthOrZero, Quantity, Slope, Unit, Velocity, check
 from core.scenes.chain_motion import ChainMotion, Slide
@@ -191,7 +192,7 @@ class ChainOnWedge(NamedScene):
         """Return the energies of the given state, heights from the apex."""
         slide, (m1, m2), (a, b) = self._slide, self._slide.masses, self._slide.slope_accelerations
         x, y = slide.position, slide.length - slide.position
-        kinetic = slide.mass * slide.velocity**2 / 2
+        kinetic = slide.mass * raised(slide.velocity, 2) / 2
         potential = -(m1 + slide.density * x / 2) * a * x - (m2 + slide.density * y / 2) * b * y
         return {
             "kinetic": kinetic if sign(kinetic) else ZERO,

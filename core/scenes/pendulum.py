@@ -22,6 +22,7 @@ from typing import Literal
 import numpy as np
 
 from core.arrays import Floats
+from core.balls import raised
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.elliptic.functions import LARGEST_QUARTER, jacobi_at, separatrix_at, split_phase
@@ -76,12 +77,12 @@ class Pendulum:
     @cached_property
     def m(self) -> Ball:
         """Energy over that of the upright rest: sin^2 of half the amplitude while it swings."""
-        return self.sine**2 + self._r**2
+        return raised(self.sine, 2) + raised(self._r, 2)
 
     @cached_property
     def m1(self) -> Ball:
         """1 - m, negative while it turns over."""
-        return self.cosine**2 - self._r**2
+        return raised(self.cosine, 2) - raised(self._r, 2)
 
     @property
     def whole(self) -> tuple[Ball, Ball]:
@@ -126,12 +127,12 @@ class Pendulum:
             return (way * sine / cosine).asinh()
         m, m1 = self._modulus
         if self.regime == "rotation":
-            return way * sine * rf(cosine**2, m1 + m * cosine**2, ONE)
+            return way * sine * rf(raised(cosine, 2), m1 + m * raised(cosine, 2), ONE)
         sn = sine / self.m.sqrt()
-        cn2 = 1 - sn**2
+        cn2 = 1 - raised(sn, 2)
         if sign(cn2) <= 0:
             return sign(sine) * self._quarter
-        u = sn * rf(cn2, cosine**2, ONE)
+        u = sn * rf(cn2, raised(cosine, 2), ONE)
         if way >= 0:
             return u
         return (2 if sign(sine) >= 0 else -2) * self._quarter - u
@@ -151,7 +152,7 @@ class Pendulum:
         regime = self.regime
         if regime == "rest" or (regime != "libration" and way != self.direction):
             return None
-        if regime == "libration" and sign(sine**2 - self.m) > 0:
+        if regime == "libration" and sign(raised(sine, 2) - self.m) > 0:
             return None
         distance = self._argument(sine, cosine, way) - self._start
         if regime == "separatrix":

@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Generic, Literal
 
-from core.balls import precision
+from core.balls import precision, raised
 from core.errors import InvalidParameter
 from core.quantities import RADIANS, Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, Unit, check
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
@@ -263,7 +263,7 @@ class RodInHole(NamedScene):
     def _energy(self) -> Mapping[str, Ball]:
         """Return the energies of the given state, heights from the axis."""
         rod = self._rod
-        kinetic = rod.mass * rod.inertia * exact(self.angular_velocity) ** 2 / 2
+        kinetic = rod.mass * rod.inertia * raised(exact(self.angular_velocity), 2) / 2
         potential = -rod.mass * rod.gravity * rod.depth * self._whole[1]
         return {"kinetic": kinetic, "potential": potential, "total": kinetic + potential}
 

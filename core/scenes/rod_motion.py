@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from core.arrays import Floats
+from core.balls import raised
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, angle_of, exact, sign
 from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
@@ -49,7 +50,7 @@ class Rod:
     @cached_property
     def inertia(self) -> Ball:
         """Moment of inertia about the axis over the mass."""
-        return self.depth**2 + self.factor * self.length**2
+        return raised(self.depth, 2) + self.factor * raised(self.length, 2)
 
     @property
     def frequency(self) -> Ball:
@@ -71,7 +72,7 @@ class Rod:
     def forces(self, sine: Ball, cosine: Ball, rate: Ball) -> Balls:
         """Return the wall's forces on A and B at an angle of this sine and cosine."""
         c1, c2, c3 = self.coefficients
-        total = c1 * cosine + c2 * rate**2
+        total = c1 * cosine + c2 * raised(rate, 2)
         difference = c3 * sine
         return (total + difference) / 2, (total - difference) / 2
 
@@ -80,7 +81,7 @@ def contact_limits(rod: Rod) -> Balls:
     """Return the largest angle of release and the least rate at the bottom of full turns that keep contact."""
     q, p = rod.parameters
     limit = angle_of(rod.inertia, 2 * rod.factor * rod.depth * rod.length)
-    return limit, (rod.gravity / rod.depth * (q + ((1 + q) ** 2 + p**2).sqrt())).sqrt()
+    return limit, (rod.gravity / rod.depth * (q + (raised(1 + q, 2) + raised(p, 2)).sqrt())).sqrt()
 
 
 class RodMotion(UnbrokenMotion):
@@ -119,7 +120,7 @@ class RodMotion(UnbrokenMotion):
     def _leaves(self, swing: Pendulum) -> Event | None:
         """Return what ends the motion first; there is none for a rod that only touches a bound."""
         candidates = []
-        if self._rim is not None and sign(swing.m - self._rim[0] ** 2) > 0:
+        if self._rim is not None and sign(swing.m - raised(self._rim[0], 2)) > 0:
             candidates += [(swing.passes(*self._rim, 1), "end-b-passes-rim")]
             candidates += [(swing.passes(-self._rim[0], self._rim[1], -1), "end-a-passes-rim")]
         candidates += self._losses(swing)
@@ -129,14 +130,14 @@ class RodMotion(UnbrokenMotion):
     def _losses(self, swing: Pendulum) -> list[tuple[Ball | None, str]]:
         """Return when the upper end leaves the wall, on either side."""
         q, p = self.rod.parameters
-        size, level = ((1 + q) ** 2 + p**2).sqrt(), q * (swing.m - swing.m1)
+        size, level = (raised(1 + q, 2) + raised(p, 2)).sqrt(), q * (swing.m - swing.m1)
         if not level < size:
             return []
         shift = angle_of(p, 1 + q)
         lower = (-level / size).acos() - shift
         upper = 2 * lower.pi() - lower - 2 * shift
         s, c = (lower / 2).sin(), (lower / 2).cos()
-        if sign(swing.m - s**2) <= 0:
+        if sign(swing.m - raised(s, 2)) <= 0:
             return []
         here = 2 * angle_of(abs(swing.sine), swing.cosine)
         side = "b" if sign(swing.sine) > 0 else "a"
@@ -194,7 +195,7 @@ class RodMotion(UnbrokenMotion):
         c1, _, c3 = (float(ball) for ball in self.rod.coefficients)
         speed = 2 * self.pendulum.frequency
         # c2 psi'^2 as a product that leaves the range of doubles only where the force itself does.
-        unit, quick = float(self.rod.coefficients[1] * speed**2), rate / float(speed)
+        unit, quick = float(self.rod.coefficients[1] * raised(speed, 2)), rate / float(speed)
         level, spin = c1 * (c - s) * (c + s), unit * quick * quick
         total, difference = level + spin, 2.0 * c3 * s * c
         return 0.5 * np.stack((total + difference, total - difference), axis=1), spin
@@ -202,7 +203,9 @@ class RodMotion(UnbrokenMotion):
     def equation(self) -> SceneEquation:
         """Return psi'' = -w0^2 sin psi."""
         swing = self.pendulum
-        angle = AcceleratedCoordinate(2 * angle_of(swing.sine, swing.cosine), swing.rate, sine=-(swing.frequency**2))
+        angle = AcceleratedCoordinate(
+            2 * angle_of(swing.sine, swing.cosine), swing.rate, sine=-raised(swing.frequency, 2)
+        )
         return SceneEquation((angle,), self.model)
 
     def states(self, columns: Mapping[str, Floats]) -> Floats:

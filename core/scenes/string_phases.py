@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from core.balls import raised
 from core.errors import BudgetExceeded
 from core.scenes.bounces import Sequence
 from core.scenes.enclosure import ZERO, Ball, exact, sign, smaller
@@ -184,7 +185,7 @@ class EventTracker:
         return (1 + restitution) * closing * self.constants.harmonic
 
     def _loss(self, closing: Ball, restitution: Ball) -> Ball:
-        return (1 - restitution**2) * closing * closing * self.constants.harmonic / 2
+        return (1 - raised(restitution, 2)) * closing * closing * self.constants.harmonic / 2
 
     def _steady(self, state: State) -> bool:
         """Whether every arc after a jerk has the accelerations of the first."""

@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
+from core.balls import raised
 from core.errors import InvalidParameter, NotApplicable
 from core.notices import Notice
 from core.quantities import (
@@ -284,7 +285,7 @@ class UnwindingShafts(NamedScene):
         state, positions = self._given, exact_pair(self.positions or (0.0, 0.0))
         for i in (0, 1):
             mass, factor = self._constants.masses[i], self._constants.factors[i]
-            kinetic = kinetic + mass * (state.velocities[i] ** 2 + factor * state.rates[i] ** 2) / 2
+            kinetic = kinetic + mass * (raised(state.velocities[i], 2) + factor * raised(state.rates[i], 2)) / 2
             potential = potential - mass * self._constants.slope_accelerations[i] * positions[i]
         return {"kinetic": kinetic, "potential": potential, "total": kinetic + potential}
 

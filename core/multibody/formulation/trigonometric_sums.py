@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from core.balls import raised
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, add_term, is_zero
 
 TIME = "t"
@@ -196,9 +197,9 @@ class Sum:
         """
         total = ZERO
         for (factors, function, wave), value in self.terms.items():
-            for (name, order), power in factors:
+            for (name, order), exponent in factors:
                 known = (places, *derivatives)[order][name] if order <= len(derivatives) else ZERO
-                value = value * known**power
+                value = value * raised(known, exponent)
             if function:
                 angle = sum((places[name] * x for name, x in wave), ZERO)
                 value = value * (angle.cos() if function == "cos" else angle.sin())

@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from flint import arb, fmpq
 
+from core.balls import raised
 from core.errors import InvalidParameter, Path
 from core.formulas import FUNCTIONS, LARGEST_EXPONENT, NAMES_OF_FUNCTIONS, Arithmetic, Formula, is_name, names_in
 from core.multibody.algebra.polynomials import Ball, is_zero
@@ -267,9 +268,9 @@ def _decimal(text: str) -> Ball:
     """Return the rational number of decimal digits, in one rounding."""
     digits, _, exponent = text.lower().partition("e")
     whole, _, part = digits.partition(".")
-    power = int(exponent or 0) - len(part)
+    behind = int(exponent or 0) - len(part)
     number = int(whole + part)
-    return arb(number * 10**power) if power >= 0 else arb(fmpq(number, 10**-power))
+    return arb(number * 10**behind) if behind >= 0 else arb(fmpq(number, 10**-behind))
 
 
 def _quotient(one: Ball, other: Ball) -> Ball:
@@ -283,7 +284,7 @@ def _power(one: Ball, exponent: Ball) -> Ball:
         raise InvalidParameter((), f"have powers between -{LARGEST_POWER} and {LARGEST_POWER}")
     if is_zero(one) and exponent > 0:
         return arb(0)
-    return _quotient(arb(1), one**-exponent) if exponent < 0 else one**exponent
+    return _quotient(arb(1), raised(one, -exponent)) if exponent < 0 else raised(one, exponent)
 
 
 def _root(argument: Ball) -> Ball:

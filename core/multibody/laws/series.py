@@ -7,7 +7,7 @@ from operator import mul
 
 from flint import arb
 
-from core.balls import as_text
+from core.balls import as_text, raised
 from core.errors import InvalidParameter
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
 from core.multibody.laws.law import Law
@@ -84,7 +84,7 @@ class LawSeries:
             case Op.ATAN2 if k == 0:
                 return arb.atan2(values[a][0], values[b][0])
             case Op.POWER if k == 0:
-                return values[a][0] ** self.tape.numbers[b]
+                return raised(values[a][0], self.tape.numbers[b])
             case Op.TANH_SLOPE:
                 tangent = values[number - 1][: k + 1]
                 return (ONE if k == 0 else ZERO) - convolved(tangent, tangent)

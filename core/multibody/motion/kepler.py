@@ -21,7 +21,7 @@ import numpy as np
 from flint import arb, ctx
 
 from core.arrays import Floats
-from core.balls import Undetermined, precision
+from core.balls import Undetermined, precision, raised
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.directions import scalar_product
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
@@ -128,7 +128,7 @@ class Kepler(Motion):
             a = -mu / beta
             since = (1 + distance / a).acosh()
             return way * (a * a * a / mu).sqrt() * (since.sinh() - since)
-        return way * (2 * distance**3 / (9 * mu)).sqrt()
+        return way * (2 * raised(distance, 3) / (9 * mu)).sqrt()
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, right to the last bits of pairs.
@@ -199,7 +199,7 @@ class Kepler(Motion):
     def _universal(self, time: Ball) -> Ball:
         """Return s at a time: by doubles in units of the start, then by Newton's method in balls."""
         distance, product, beta = self.constants
-        unit = (distance**3 / abs(self.mu)).sqrt()
+        unit = (raised(distance, 3) / abs(self.mu)).sqrt()
         speed = distance / unit
         sign = 1.0 if self.mu > 0 else -1.0
         scaled = (float(product / (distance * speed)), sign, float(beta / (speed * speed)), float(time / unit))

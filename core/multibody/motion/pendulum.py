@@ -15,7 +15,7 @@ import numpy as np
 from flint import arb, ctx
 
 from core.arrays import Floats
-from core.balls import Undetermined, precision
+from core.balls import Undetermined, precision, raised
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, entry, is_zero
 from core.multibody.motion.motion import BallState, Motion, States, in_pairs
@@ -97,7 +97,7 @@ class PlanePendulum(Motion):
                 found.append(BallState(self.table.q, self.table.v, turned=ZERO))
                 continue
             half_sine, half_cosine, rate, turned = angle(time)
-            sine, cosine = 2 * half_sine * half_cosine, half_cosine**2 - half_sine**2
+            sine, cosine = 2 * half_sine * half_cosine, raised(half_cosine, 2) - raised(half_sine, 2)
             across, along = cosine * a - sine * b, cosine * b + sine * a
             found.append(BallState([x + across, y + along], [-rate * along, rate * across], turned=turned - start))
         return found

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from math import inf
 
+from core.balls import raised
 from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.algebra.directions import unit
 from core.multibody.algebra.polynomials import (
@@ -60,7 +61,7 @@ def chain(connection: Chain, measures: Measures, name: str, path: Path) -> None:
         )
     at = [evaluated(x, measures.table.q) for x in peg.at]
     ways = [_direction(measures, end, peg, (*path, "through", i)) for end, i in ((first, 0), (last, 2))]
-    bend = sum(((x + y) ** 2 for x, y in zip(*ways, strict=True)), ZERO)
+    bend = sum((raised(x + y, 2) for x, y in zip(*ways, strict=True)), ZERO)
     if is_zero(bend):
         raise InvalidParameter(
             (*path, "through"), "bend at the peg", remedy="leave the peg out: describe the chain as a body"

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise, product
 
+from core.balls import raised
 from core.errors import InvalidParameter, Path, SlackAtStart
 from core.multibody.algebra.polynomials import (
     ONE,
@@ -185,7 +186,7 @@ def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: String,
     length = connection.length
     if measures.one_sided:
         d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
-        square = measures.squared(d) if length is None else written_length(measures, length, path) ** 2
+        square = measures.squared(d) if length is None else raised(written_length(measures, length, path), 2)
         if not square > 0:
             raise InvalidParameter((*path, "through"), "pass places that are apart")
         way = measures.squared(d)

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from core.balls import raised
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import cross
 from core.multibody.algebra.polynomials import (
@@ -149,7 +150,7 @@ def support(measures: Measures, name: str, side: Side, n: Sequence[Poly], path: 
         return Support(constant(side.radius), lever, axes)
     squares = [a * a for a in side.semi_axes]
     table = measures.table
-    reach = sum((a * evaluated(x, table.q) ** 2 for a, x in zip(squares, leaning, strict=True)), ONE - ONE)
+    reach = sum((a * raised(evaluated(x, table.q), 2) for a, x in zip(squares, leaning, strict=True)), ONE - ONE)
     if not reach > 0:
         raise InvalidParameter(
             path,

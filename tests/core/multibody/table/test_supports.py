@@ -228,3 +228,21 @@ def test_what_touches_at_several_places_is_no_rolling(kind: str) -> None:
     body = {"mass": 1, "at": [0, 0, 1], "shape": {"kind": kind} | {size: 1 for size in sizes[kind]}}
     with pytest.raises(InvalidParameter, match="several places"):
         solve_scene(read(scene(body, kind="rolling")), [1.0], ["trajectory"])
+
+
+@pytest.mark.parametrize(
+    "shape", [{"kind": "disc", "radius": 0.5}, {"kind": "ellipsoid", "semi_axes": [0.5, 0.5, 0.2]}]
+)
+@pytest.mark.parametrize("heading", [0.5, 1.0, 2.5, -0.3])
+def test_axes_in_the_decimals_of_doubles_are_those_that_they_round(shape: dict[str, Any], heading: float) -> None:
+    """What is upright to rounding only rolls straight on, by Euler's equations of what is exactly so."""
+    x, y = math.cos(heading), math.sin(heading)
+    body = {
+        "mass": 2,
+        "shape": shape,
+        "at": [0, 0, 0.5],
+        "axes": [[x, y, 0], [0, 0, 1], [y, -x, 0]],
+        "velocity": [3 * x, 3 * y, 0],
+    }
+    place = column(solve_scene(read(scene(body, kind="rolling")), [0.0, 2.0]), "body.position")
+    assert np.abs(place.values[1] - [6 * x, 6 * y, 0.5]).max() <= place.error + 1e-14
