@@ -20,6 +20,7 @@ from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.equations.packed import nearest
+from core.multibody.language.declared_units import Measured
 from core.multibody.phases.phase_columns import ColumnsInPhases
 from core.multibody.phases.stretches import Stretch, stretches
 from core.multibody.search.pieces import PAST_A_PERIOD
@@ -133,6 +134,9 @@ class Searches:
 
     def occurrences(self, search: ValueSearch, index: int) -> list[Occurrence]:
         """Return the times after the start at which a quantity takes a value; it raises as `extremes` does."""
+        group, name = self._column(search, index)
+        column = self.stretches[0].columns(np.zeros(1), self.how, group)[name]
+        Measured(column.unit).check(search.written, ("outputs", index, "when", "equals"), None)
         wanted = MOST_FOUND if search.nth is None else search.nth
         found: list[Occurrence] = []
         for one in islice(self._taken(search, self._parts(search, index)), wanted):

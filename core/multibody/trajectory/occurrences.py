@@ -53,12 +53,15 @@ class ValueSearch:
         The double nearest to the value.
     nth : int or None
     value : ball
+    written : number
+        The value as it is written, of which the unit is compared with that of the quantity.
     """
 
     quantity: str
     equals: float
     nth: int | None
     value: Ball = field(compare=False)
+    written: Number = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -121,7 +124,7 @@ def value_search(search: When, index: int, numerals: Numerals) -> ValueSearch:
     nth = search.nth
     if nth is not None and (isinstance(nth, bool) or not isinstance(nth, int) or not 1 <= nth <= MOST_FOUND):
         raise InvalidParameter((*where, "nth"), f"be a whole number from 1 to {MOST_FOUND}")
-    return ValueSearch(search.quantity, nearest(value), nth, value)
+    return ValueSearch(search.quantity, nearest(value), nth, value, search.equals)
 
 
 def _require_name(quantity: object, path: Path) -> None:

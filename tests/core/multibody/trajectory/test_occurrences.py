@@ -117,9 +117,10 @@ def test_extremes_of_what_does_not_repeat_are_those_of_the_time():
 def test_an_angle_is_unwrapped_when_it_is_searched():
     motor = json.loads((SCENES / "crank-slider.json").read_text())
     scene = read({key: value for key, value in motor.items() if key not in ("times", "outputs")})
-    found, errors = times_of(scene, 3.0, When("crank.angle", 20.0))
-    assert found == pytest.approx([2.0], rel=1e-14)
-    assert errors[0] < 1e-13
+    for value in (20.0, {"value": "3600/pi", "unit": "deg"}, {"value": "10/pi", "unit": "rev"}):
+        found, errors = times_of(scene, 3.0, When("crank.angle", value))
+        assert found == pytest.approx([2.0], rel=1e-14)
+        assert errors[0] < 1e-13
 
 
 @pytest.mark.parametrize(
@@ -129,6 +130,8 @@ def test_an_angle_is_unwrapped_when_it_is_searched():
         (When("p0.position", 1.0), ("outputs", 0, "when", "quantity")),
         (When("", 1.0), ("outputs", 0, "when", "quantity")),
         (When("r0.force", math.nan), ("outputs", 0, "when", "equals")),
+        (When("r0.force", {"value": 1, "unit": "N m"}), ("outputs", 0, "when", "equals", "unit")),
+        (When("p0.position.x", {"value": 1, "unit": "s"}), ("outputs", 0, "when", "equals", "unit")),
         (When("r0.force", 1.0, 0), ("outputs", 0, "when", "nth")),
         (ExtremesOf("nothing"), ("outputs", 0, "extremes")),
         (ExtremesOf(3), ("outputs", 0, "extremes")),  # type: ignore[arg-type]
