@@ -115,7 +115,7 @@ class Reader(Generic[Q]):
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
             detail = str(found[0]["ctx"]["error"])
-            fault = Fault("", f"must be JSON: {detail}", "see RFC 8259 for what may stand there")
+            fault = Fault("", f"must be JSON: {detail}", "see RFC 8259 for the grammar")
             return Refusal("invalid-json", detail, faults=[fault])
         faults, codes = self._wording.faults(found, cache(partial(_parsed, document)))
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"

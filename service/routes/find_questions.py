@@ -109,7 +109,7 @@ def _place(pointer: str, request: Any, within: Path) -> Path:
     if path and can_vary(present, request.get("let") or ()):
         return path
     near = did_you_mean(pointer, [pointer_of(one) for one in known])
-    remedy = near or "what is varied has to be in the request of the question, with any value"
+    remedy = near or "write the number that is varied into the request of the question, with any value"
     raise InvalidParameter(within, "lead to a number in the request", remedy=remedy)
 
 

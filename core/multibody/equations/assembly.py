@@ -50,7 +50,7 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
                 paths.get(row.name, ()),
                 f'agree with the positions: "{row.name}" misses them by {as_text(abs(residual), 3)}'
                 f" ({as_text(abs(residual) / scale, 2)} of its terms)",
-                remedy="move the bodies so that what is connected meets",
+                remedy="move the bodies so that connected places meet",
             )
         if row.name not in moved:
             moved.append(row.name)
@@ -121,7 +121,7 @@ def least_change(table: Table, lines: Sequence[Line], residuals: Sequence[Ball])
         raise NotApplicable(
             "lengths or masses are so far apart that 320 bits cannot tell which connections hold",
             path=("connections",),
-            remedy="leave out what is negligibly small",
+            remedy="leave out whatever is negligibly small",
         ) from None
     step = [ZERO] * len(table.q)
     for line, weight in zip(lines, weights, strict=True):

@@ -135,7 +135,7 @@ def weightless(table: Table, indices: Iterable[int], lines: Iterable[dict[int, B
     return InvalidParameter(
         ("bodies", names[0]) if len(names) == 1 else ("bodies",),
         f"have mass and inertia where they move by themselves, unlike what {', '.join(names)} leaves free",
-        remedy="give it mass or inertia, connect it to what has some, or start away from a singular place",
+        remedy="give it mass or inertia, connect it to a body that has some, or start away from a singular place",
     )
 
 

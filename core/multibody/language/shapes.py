@@ -184,7 +184,7 @@ def _polygon(read: _Reader, at: Corner) -> Shape:
                 raise InvalidParameter(
                     (*path, i),
                     "be on the left of every edge: a polygon is convex, and its corners go counter-clockwise",
-                    remedy="split what is not convex into several bodies that are welded together",
+                    remedy="split a shape that is not convex into several bodies that are welded together",
                 )
     pairs = list(zip(corners, [*corners[1:], corners[0]], strict=True))
     areas = [p[0] * q[1] - p[1] * q[0] for p, q in pairs]

@@ -45,7 +45,7 @@ PLACES_AND_FORCES = ("trajectory", "forces-in-time")
 """Outputs that an audit compares."""
 SUMS = ("work-in-time", "paths-in-time")
 """Outputs that are summed up along the motion."""
-_ONLY_SUMS = "it is not propagated to what is summed up along the motion, and there is nothing else"
+_ONLY_SUMS = "it is not propagated to integrals along the motion, and nothing else is asked for"
 
 
 class DescribedSystem:
@@ -156,7 +156,7 @@ class DescribedSystem:
         """Return the columns that a method computes, measured against the motion itself, and what they cost."""
         if any(output in SUMS or not isinstance(output, str) for output in self.outputs):
             raise NotApplicable(
-                "what is summed up or searched along the way belongs to the motion itself, not to a method",
+                "integrals and searches along the motion are answered of the motion itself, not of a method",
                 path=("method",),
                 remedy="leave the method out",
             )

@@ -161,5 +161,5 @@ def _arcs(number: int, phase: Phase, bounces: Accumulation, until: Ball, late: f
         MOST_ARCS,
         MOST_ARCS,
         path=("outputs",),
-        remedy="ask for earlier times, or without what is summed up or searched along the way",
+        remedy="ask for earlier times, or leave out integrals and searches along the motion",
     )

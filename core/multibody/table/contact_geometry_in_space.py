@@ -137,7 +137,7 @@ def _round(a: Side, b: Side, path: Path, *, rubs: bool) -> list[Touching]:
     if rubs:
         raise InvalidParameter(
             (*path, "friction"),
-            "be left out of what is round on both sides in space",
+            "be left out between two round bodies in space",
             remedy="let one of them be a plane, or describe rolling",
         )
     if not b.single or a.semi_axes or not (a.single or b.radius < 0):

@@ -109,7 +109,7 @@ def place_on(measures: Measures, connection: Contact, path: Path) -> tuple[Side,
         face = "face" if measures.dimension == 2 else "plane"
         raise InvalidParameter(
             (*path, "place"),
-            "belong to a body: a fixed point does not move on what is fixed",
+            "belong to a body: a fixed point does not move on a fixed face",
             remedy=f'name a body or a place of one, as "rod.end"; or let the {face} in "on" be that of a body',
         )
     if at.body == first.body:
@@ -142,7 +142,7 @@ def gap_of_rims(a: tuple[Point, Ball], b: tuple[Point, Ball], path: Path) -> tup
     if is_zero(reach):
         raise InvalidParameter(path, "have radii that differ: a point has no side of a point")
     if b[1] < 0 and reach > 0:
-        raise InvalidParameter(path, "have a hollow that is larger than what is in it")
+        raise InvalidParameter(path, "have a hollow that is larger than the body in it")
     d = [difference(x, y) for x, y in zip(a[0].at, b[0].at, strict=True)]
     half = 1 / (2 * reach)
     return combined((half, dot(d, d)), (-half * reach * reach, constant(ONE))), d, reach

@@ -68,7 +68,7 @@ def rolling_in_space(measures: Measures, name: str, connection: Rolling, path: P
         raise InvalidParameter(where, "have at, and one of: normal (and rate); direction and radius; radius")
     if side.frame is None or side.frame.turns is None:
         raise InvalidParameter(
-            where, "be a plane, of what is no ball about its centre of mass", remedy='have at and "normal"'
+            where, "be a plane for a body that is not a ball about its centre of mass", remedy='have at and "normal"'
         )
     surface = _Surface(measures, name, side.points[0], side.radius, list(side.frame.turns), at, where)
     if "direction" in keys:

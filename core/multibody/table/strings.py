@@ -66,7 +66,7 @@ def string(connection: String, measures: Measures, name: str, path: Path) -> Non
         if knot.radius is not None and knot.turn is not None and knot is not knots[-1]:
             runs.append([knot])
     if connection.length is not None and (len(runs) > 1 or any(knot.radius is not None for knot in knots)):
-        raise InvalidParameter((*path, "length"), "be left out: what is wound on a drum has no part in it")
+        raise InvalidParameter((*path, "length"), "be left out: the part that is wound on a drum is not counted")
     for number, run in enumerate(runs):
         part = name if len(runs) == 1 else f"{name}.{number + 1}"
         _run(measures, name, part, run, connection, path)

@@ -139,7 +139,7 @@ def support(measures: Measures, name: str, side: Side, n: Sequence[Poly], path: 
         return Support(constant(side.radius), below=below, turns=turns)
     if axes is None:
         raise InvalidParameter(
-            path, "be left out of what is round and cannot turn", remedy="give the body its moments of inertia"
+            path, "be left out for a round body that cannot turn", remedy="give the body its moments of inertia"
         )
     leaning = [
         measures.affine(name, f"{name}.leaning.{i + 1}", "1", dot(n, list(map(coordinate, axis))))

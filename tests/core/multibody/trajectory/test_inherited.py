@@ -161,7 +161,7 @@ def test_what_is_summed_up_along_the_motion_has_none() -> None:
     answer = solve_scene(read(DOUBLE), [1.0], ("work-in-time", "paths-in-time"), input_uncertainty=1e-9)
     assert answer.trajectory is not None
     assert answer.trajectory.accuracy.inherited is None
-    assert "summed up" in str(answer.trajectory.accuracy.why)
+    assert "integrals along the motion" in str(answer.trajectory.accuracy.why)
 
 
 @pytest.mark.parametrize("seed", range(11))
