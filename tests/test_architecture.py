@@ -319,7 +319,7 @@ TESTED_IN |= {
         ),
         "formulation/test_scene_equations": (
             "equations_answer formulation/chart formulation/closed_forms formulation/constants "
-            "formulation/euler formulation/constraint_forces "
+            "formulation/euler formulation/conserved formulation/constraint_forces "
             "formulation/formula_nodes formulation/lagrange formulation/law_forces formulation/linear_equations "
             "formulation/sides formulation/symbols"
         ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.multibody.algebra.polynomials import ONE, Ball, is_zero
+from core.multibody.formulation.conserved import ENERGY, Conserved
 from core.multibody.formulation.trigonometric_sums import Sum, added
 from core.multibody.motion.turning_body import TurningBody
 
@@ -37,16 +38,18 @@ def euler_equations(body: TurningBody, rates: Sequence[str], down: Sequence[str]
     return found
 
 
-def conserved_of_body(body: TurningBody, rates: Sequence[str], down: Sequence[str]) -> dict[str, Sum]:
+def conserved_of_body(body: TurningBody, name: str, rates: Sequence[str], down: Sequence[str]) -> list[Conserved]:
     """Return energy, and the angular momentum that gravity does not change: its square, or its vertical component."""
     w = [Sum.variable(name) for name in rates]
     momentum = _times(body.tensor, w)
     energy = _dot(momentum, w).times(ONE / 2)
     if body.arm is None:
-        return {"energy": energy, "square of the angular momentum": _dot(momentum, momentum)}
+        square = _dot(momentum, momentum)
+        return [Conserved(ENERGY, name, energy), Conserved("square of the angular momentum", name, square)]
     g = [Sum.variable(name) for name in down]
     fall = added(one.times(x) for one, x in zip(g, body.arm, strict=True))
-    return {"energy": energy - fall, "angular momentum along gravity": _dot(momentum, g)}
+    along = _dot(momentum, g)
+    return [Conserved(ENERGY, name, energy - fall), Conserved("angular momentum along gravity", name, along)]
 
 
 def _times(matrix: Sequence[Sequence[Ball]], vector: Vector) -> Vector:

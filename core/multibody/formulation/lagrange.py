@@ -1,31 +1,12 @@
-"""Lagrange's equations of a part in the variables of its chart, and what its motion conserves."""
+"""Lagrange's equations of a part in the variables of its chart."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from core.multibody.algebra.polynomials import Ball
 from core.multibody.formulation.chart import Chart
-from core.multibody.formulation.trigonometric_sums import TIME, Sum, Term, Variable, added
-
-ENERGY = "energy"
-"""The name of a conserved energy, and how that of one body begins."""
-
-
-@dataclass(frozen=True)
-class Conserved:
-    """A quantity that stays what it is.
-
-    Attributes
-    ----------
-    name : str
-    formula : Sum
-        Of variables and their rates.
-    """
-
-    name: str
-    formula: Sum
+from core.multibody.formulation.trigonometric_sums import Sum, Variable, added
 
 
 @dataclass(frozen=True)
@@ -34,27 +15,20 @@ class LagrangeEquations:
 
     Attributes
     ----------
-    chart : Chart
     equations : mapping of str to Sum
         By variable: inertia less forces, which is zero.
     kinetic, potential : Sum
-    multipliers : list of str
-        Names of the multipliers of the rows that the chart has not solved.
     lagrangian : Sum or None
         None where Lagrange's equations of it are not all of the forces.
-    conserved : list of Conserved
     """
 
-    chart: Chart
     equations: Mapping[str, Sum]
     kinetic: Sum
     potential: Sum
-    multipliers: list[str]
-    lagrangian: Sum | None = None
-    conserved: list[Conserved] = field(default_factory=list)
+    lagrangian: Sum | None
 
 
-def lagrange_equations(chart: Chart, force_names: Sequence[str], multipliers: list[str]) -> LagrangeEquations:
+def lagrange_equations(chart: Chart, force_names: Sequence[str], multipliers: Sequence[str]) -> LagrangeEquations:
     """Return the equations of a part.
 
     Parameters
@@ -62,7 +36,7 @@ def lagrange_equations(chart: Chart, force_names: Sequence[str], multipliers: li
     chart : Chart
     force_names : sequence of str
         Symbols of the values of the laws of its table, in their order.
-    multipliers : list of str
+    multipliers : sequence of str
         Symbols of the multipliers of the rows of the chart.
     """
     table, places = chart.table, chart.places
@@ -103,74 +77,19 @@ def lagrange_equations(chart: Chart, force_names: Sequence[str], multipliers: li
         )
         for name in chart.variables
     }
-    found = LagrangeEquations(chart, equations, added(kinetic), added(potential), multipliers)
-    free = found if chart.rows else _with_lagrangian(found)
-    free.conserved.extend(_conserved(free))
-    return free
+    moving, resting = added(kinetic), added(potential)
+    lagrangian = None if chart.rows else _lagrangian(moving, resting, equations)
+    return LagrangeEquations(equations, moving, resting, lagrangian)
 
 
-def _with_lagrangian(found: LagrangeEquations) -> LagrangeEquations:
-    """Return the equations with their Lagrangian, if its equations are these."""
-    lagrangian = found.kinetic - found.potential
-    for name, equation in found.equations.items():
+def _lagrangian(kinetic: Sum, potential: Sum, equations: Mapping[str, Sum]) -> Sum | None:
+    """Return the Lagrangian of equations, None where its equations are not these."""
+    lagrangian = kinetic - potential
+    for name, equation in equations.items():
         momentum = lagrangian.derivative(Variable(name, 1))
         if equation - (momentum.rate() - lagrangian.derivative(Variable(name))):
-            return found
-    return LagrangeEquations(
-        found.chart, found.equations, found.kinetic, found.potential, found.multipliers, lagrangian
-    )
-
-
-def _conserved(found: LagrangeEquations) -> list[Conserved]:
-    """Return what is constant along every motion, as the equations themselves show."""
-    kept = []
-    power = added(Sum.variable(name, 1) * one for name, one in found.equations.items())
-    momenta = {name: found.kinetic.derivative(Variable(name, 1)) for name in found.equations}
-    energy = added(Sum.variable(name, 1) * one for name, one in momenta.items()) - found.kinetic + found.potential
-    if energy and not power - energy.rate():
-        driven = TIME in energy.names() or bool(energy - found.kinetic - found.potential)
-        kept.append(Conserved("Jacobi integral" if driven else ENERGY, energy))
-    for name, equation in found.equations.items():
-        momentum = _integral(equation)
-        if momentum:
-            kept.append(Conserved(f"momentum of {name}", momentum))
-    return kept
-
-
-def _integral(equation: Sum) -> Sum | None:
-    """Return the function of places and rates of which an equation is the derivative by time, None without one."""
-    names = [variable.name for term in equation.terms for variable, _ in term.factors if variable.order == 2]
-    first = added(equation.derivative(Variable(name, 2)) * Sum.variable(name, 1) for name in dict.fromkeys(names))
-    rest = equation - first.rate()
-    # What is left of a motion with gyroscopic forces is a rate times a function of its variable alone.
-    parts = [first]
-    for term, value in rest.terms.items():
-        part = _of_one(term, value)
-        if part is None:
             return None
-        parts.append(part)
-    return added(parts)
-
-
-def _of_one(term: Term, value: Ball) -> Sum | None:
-    """Return the integral by time of a rate times a function of its own variable, None of what is another."""
-    rates = [(variable, power) for variable, power in term.factors if variable.order == 1]
-    if len(rates) != 1 or rates[0][1] != 1:
-        return None
-    name = rates[0][0].name
-    others = [(variable, power) for variable, power in term.factors if variable != rates[0][0]]
-    if term.function:
-        if others or [at for at, _ in term.wave] != [name]:
-            return None
-        factor = value / term.wave[0][1]
-        turned = ("sin", factor) if term.function == "cos" else ("cos", -factor)
-        return Sum({Term((), turned[0], term.wave): turned[1]})
-    if any(variable != Variable(name) for variable, _ in others):
-        return None
-    power = others[0][1] if others else 0
-    if power == -1:
-        return None
-    return Sum({Term(((Variable(name), power + 1),)): value / (power + 1)})
+    return lagrangian
 
 
 def measures_of(chart: Chart) -> list[Sum]:

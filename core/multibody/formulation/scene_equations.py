@@ -14,11 +14,12 @@ from core.multibody.equations.dynamics import kinetic, potential
 from core.multibody.equations_answer import ConservedQuantity, LinearEquations, SceneEquations
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.closed_forms import closed_forms
+from core.multibody.formulation.conserved import ENERGY, Conserved, conserved_of_part
 from core.multibody.formulation.constants import Constants
 from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
 from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
-from core.multibody.formulation.lagrange import ENERGY, Conserved, lagrange_equations, measures_of
+from core.multibody.formulation.lagrange import lagrange_equations, measures_of
 from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
 from core.multibody.formulation.linear_equations import linear_equations
 from core.multibody.formulation.self_check import check_chart, check_formula
@@ -95,24 +96,27 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
     constants = Constants([*reserved, *written.numbers])
     places = _places(found, written)
     written.forces |= _forces(found, written.places)
+    lagrangian = written.lagrangian if moving else None
     shown = SceneEquations(
-        {name: None if node is None else constants.plain(node) for name, node in written.coordinates.items()},
-        tuple(dict.fromkeys([*reduced.steps, *written.why])),
-        sum(piece.freedom for piece, _ in moving),
-        {name: constants.plain(node) for name, node in places.items()},
-        {},
-        tuple(constants.equation(*sides) for sides in written.equations),
-        tuple(constants.equation(*sides) for sides in written.constraints),
-        {name: constants.formula(node) for name, node in written.forces.items()},
-        None if written.lagrangian is None or not moving else constants.formula(node_of_sum(added(written.lagrangian))),
-        tuple(
+        coordinates={
+            name: None if node is None else constants.plain(node) for name, node in written.coordinates.items()
+        },
+        why=tuple(dict.fromkeys([*reduced.steps, *written.why])),
+        degrees_of_freedom=sum(piece.freedom for piece, _ in moving),
+        places={name: constants.plain(node) for name, node in places.items()},
+        constants={},
+        equations=tuple(constants.equation(*sides) for sides in written.equations),
+        constraints=tuple(constants.equation(*sides) for sides in written.constraints),
+        forces={name: constants.formula(node) for name, node in written.forces.items()},
+        lagrangian=None if not lagrangian else constants.formula(node_of_sum(added(lagrangian))),
+        conserved=tuple(
             ConservedQuantity(
                 one.name, constants.formula(node_of_sum(one.formula)), in_doubles(value), error_in_doubles(value)
             )
             for one, value in conserved
         ),
-        tuple(written.linear),
-        {name: constants.formula(node) for name, node in written.closed.items()},
+        linear=tuple(written.linear),
+        closed_form={name: constants.formula(node) for name, node in written.closed.items()},
     )
     # All constants are known when everything is written.
     given = {name: in_doubles(value) for name, value in written.numbers.items()}
@@ -123,14 +127,14 @@ def _with_one_energy(
     found: Modelled, conserved: list[tuple[Conserved, Ball]], parts: int
 ) -> list[tuple[Conserved, Ball]]:
     """Return what is conserved with the energies of all parts as that of the scene, where none is missing."""
-    own = [(one, value) for one, value in conserved if one.name.startswith(ENERGY)]
-    others = [(one, value) for one, value in conserved if not one.name.startswith(ENERGY)]
+    own = [(one, value) for one, value in conserved if one.kind == ENERGY]
+    others = [(one, value) for one, value in conserved if one.kind != ENERGY]
     if not own or len(own) < parts:
         return conserved
     total = energy_of(found.described, NumberKind(lambda value: value, None)).total
     # What rests, spins steadily, or is a spring's energy at its length of zero is a constant.
     rest = Sum.number(total - sum((value for _, value in own), total * 0))
-    return [(Conserved(ENERGY, added([*(one.formula for one, _ in own), rest])), total), *others]
+    return [(Conserved(ENERGY, "", added([*(one.formula for one, _ in own), rest])), total), *others]
 
 
 def _rests(motion: Motion) -> bool:
@@ -160,11 +164,7 @@ def _write_part(
         written.lagrangian = None
     elif written.lagrangian is not None:
         written.lagrangian.append(found.lagrangian)
-    for one in found.conserved:
-        value = one.formula.value(chart.start, chart.rates)
-        if one.name == ENERGY:
-            check_formula(one.name, "", one.formula, _energy(piece.table), chart.start, chart.rates)
-        written.conserved.append((one, value))
+    _conserve(written, conserved_of_part(found), piece.table, chart.start, chart.rates)
     if not multipliers and not piece.table.acting:
         written.linear += linear_equations(found.equations, chart.start)
     written.start |= chart.start
@@ -192,17 +192,23 @@ def _write_body(written: _Written, body: TurningBody, name: str, piece: Piece) -
     )
     written.equations += equation_sides(euler_equations(body, rates, down), order=1)
     written.lagrangian = None
-    for what, formula in conserved_of_body(body, rates, down).items():
-        if what == ENERGY:
-            check_formula(what, name, formula, _energy(piece.table), start, {})
-        written.conserved.append((Conserved(f"{what} of {name}", formula), formula.value(start)))
+    _conserve(written, conserved_of_body(body, name, rates, down), piece.table, start, {})
     for i in piece.indices:
         del written.places[i]
 
 
-def _energy(table: Table) -> Ball:
-    """Return the energy at the start of a table without laws."""
-    return kinetic(table) + potential(table)
+def _conserve(
+    written: _Written,
+    conserved: Sequence[Conserved],
+    table: Table,
+    start: Mapping[str, Ball],
+    rates: Mapping[str, Ball],
+) -> None:
+    """Write what a part conserves with its values at the start, of which the energy is that of its table."""
+    for one in conserved:
+        if one.kind == ENERGY:
+            check_formula(ENERGY, one.of, one.formula, kinetic(table) + potential(table), start, rates)
+        written.conserved.append((one, one.formula.value(start, rates)))
 
 
 def _forces(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:

@@ -123,13 +123,18 @@ def coordinates_of(chart: Chart, columns: Mapping[int, Node]) -> dict[str, Node 
             angle = call("atan2", y, x) if one.heading else call("atan2", x, Node("negative", inner=(y,)))
             found[name] = column or angle
         lengths = [key[0] for key in one.radius if key]
-        if len(lengths) == 1 and found.get(chart.symbols[lengths[0]], flat) is None:
+        if len(lengths) == 1 and _is_missing(found, chart.symbols[lengths[0]]):
             found[chart.symbols[lengths[0]]] = _length(flat, one.radius, lengths[0])
     for row in chart.table.rows:
         for i, name in enumerate(chart.symbols):
-            if found.get(name, row) is None and row.measure is not None:
+            if row.measure is not None and _is_missing(found, name):
                 found[name] = _from_square(row.measure, i, columns) or _from_product(row.measure, i, columns)
     return {name: found[name] for name in chart.variables}
+
+
+def _is_missing(found: Mapping[str, Node | None], name: str) -> bool:
+    """Return whether a name is that of a variable without a formula."""
+    return name in found and found[name] is None
 
 
 def _from_square(measure: Poly, i: int, columns: Mapping[int, Node]) -> Node | None:

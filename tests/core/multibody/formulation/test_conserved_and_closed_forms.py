@@ -102,8 +102,8 @@ UNSEEN = {"ball-bounces-with-spin": (2, 1), "lagrange-top": (2, 0), "precessing-
 """Of how many of both no column shows, at a later time, the rates on which they depend."""
 
 
-def later(name: str) -> tuple[SceneEquations, dict[str, Jet], dict[str, Jet]]:
-    """Return the equations of a scene of the catalogue, its columns at `LATER`, and the time and constants."""
+def later(name: str) -> tuple[SceneEquations, dict[str, Jet], dict[str, Jet], float]:
+    """Return the equations of a scene of the catalogue, its columns at `LATER`, the time and constants, its energy."""
     scene = scene_of(scene_catalogue()[name].question)
     answer = answer_of(scene, [0.0, LATER])
     assert answer.equations is not None
@@ -112,7 +112,13 @@ def later(name: str) -> tuple[SceneEquations, dict[str, Jet], dict[str, Jet]]:
     assert not answer.phases or len(answer.phases) == 1
     known = {key: Jet(mpmath.mpf(x)) for key, x in answer.equations.constants.items()}
     known["t"] = Jet(mpmath.mpf(LATER), mpmath.mpf(1))
-    return answer.equations, columns_at(scene, answer, 1), known
+    assert answer.energy is not None
+    return answer.equations, columns_at(scene, answer, 1), known, answer.energy.total
+
+
+def test_the_energy_of_a_part_beside_one_that_loses_energy_has_its_coordinates_in_its_name() -> None:
+    equations, *_ = later("billiard-ball")
+    assert [one.name for one in equations.conserved] == ["energy of ball.turn.z", "momentum of ball.turn.z"]
 
 
 def test_every_scene_of_the_catalogue_is_expected_to_conserve_something_or_nothing() -> None:
@@ -121,7 +127,7 @@ def test_every_scene_of_the_catalogue_is_expected_to_conserve_something_or_nothi
 
 @pytest.mark.parametrize("name", ASKED)
 def test_what_is_said_to_be_conserved_stays(name: str) -> None:
-    equations, columns, jets = later(name)
+    equations, columns, jets, energy = later(name)
     for key, text in equations.coordinates.items():
         if text is None and key in columns:
             jets[key] = columns[key]
@@ -133,13 +139,15 @@ def test_what_is_said_to_be_conserved_stays(name: str) -> None:
             compared += 1
             value = float(evaluated(one.formula.plain, jets).value)
             assert value == pytest.approx(one.value, rel=1e-7, abs=1e-7), one.name
+        if one.name == "energy":
+            assert one.value == pytest.approx(energy, rel=1e-15)
     assert len(equations.conserved) == CONSERVED[name]
     assert compared == CONSERVED[name] - UNSEEN.get(name, (0, 0))[0]
 
 
 @pytest.mark.parametrize("name", ASKED)
 def test_closed_forms_are_the_motion(name: str) -> None:
-    equations, columns, jets = later(name)
+    equations, columns, jets, _ = later(name)
     compared = 0
     for key, formula in equations.closed_form.items():
         text, moved = equations.coordinates[key], evaluated(formula.plain, jets)
