@@ -22,7 +22,8 @@ SMALL = 1e-8
 """Share of the characteristic scale that is the absolute tolerance if none is given."""
 
 Digits = Annotated[int, Quantity("1", at_least=1, at_most=15)]
-Places = Annotated[int, Quantity("1", at_least=-300, at_most=300)]
+# A double has no more digits than these before its point; places far above the reference would accept any number.
+Places = Annotated[int, Quantity("1", at_least=-15, at_most=300)]
 Share = Annotated[float, Quantity("1", at_least=0, below=1)]
 Width = Annotated[float, Quantity("1", at_least=0)]
 End = Annotated[float, Quantity("1")]

@@ -34,6 +34,8 @@ _GOES_ON = re.compile(rf"[-+*/^(×⋅·÷√]|{_FUNCTION}|(?!1\s*/\s*[^\W\d])\d|
 """What follows a number that is the beginning of a formula; ``2.5 1/s`` has a unit, which has no sum."""
 _UNIT = re.compile(r"[\w°%µμΩ·*/^()²³⁻¹. -]*")
 _PRODUCT = str.maketrans({"⋅": "·", "×": "·"})
+_TWO_SIGNS = re.compile(r"[-+]{2}")
+"""Two signs together: ``2.5 +- 0.3`` is no difference, and ``--2`` nothing that anybody means."""
 _SEPARATOR = re.compile(r"[;|]|,\s")
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("null", "none", "keine", "keiner", "aucun", "aucune", "ninguno", "ninguna")),
@@ -90,6 +92,8 @@ def typed_entry(text: str, locale: Locale | None = None) -> TypedEntry:
         value, rest = number
         if not _GOES_ON.match(rest):
             return TypedEntry(value, _symbols(rest, locale))
+    if _TWO_SIGNS.search(entry):
+        raise _malformed()
     formula, unit = entry, ""
     split = _WITH_UNIT.fullmatch(entry)
     if split is not None and not re.search(r"[-+*/^(]\s*$", split[1]):
@@ -107,9 +111,14 @@ def _symbols(unit: str, locale: Locale | None) -> str | None:
     if unit.startswith("[") and unit.endswith("]"):
         unit = unit[1:-1].strip()
     if not _UNIT.fullmatch(unit):
-        rule = "be one number with its unit, a formula, a list or a word"
-        raise EntryFault((), rule, sentence=Sentence("entry-malformed"))
+        raise _malformed()
     return in_symbols(unit, locale) or None
+
+
+def _malformed() -> EntryFault:
+    """Return the fault of an entry that is nothing that can be read."""
+    rule = "be one number with its unit, a formula, a list or a word"
+    return EntryFault((), rule, sentence=Sentence("entry-malformed"))
 
 
 def _is_list_in_parentheses(entry: str) -> bool:

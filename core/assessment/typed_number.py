@@ -1,6 +1,7 @@
 """Numbers as somebody types them: ``6,28``, ``1 234,5``, ``3·10²``, ``−2.5e3``, ``35°16′``.
 
-A mark that could be read in two ways, such as the comma of ``1,234``, is refused unless a locale says what it is.
+A mark that could be read in two ways, such as the comma of ``1,234``, is refused unless a locale says what it is; so
+are groups as another locale writes them, such as those of ``1.234,5`` in English.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ def plain_digits(digits: str, locale: Locale | None) -> str:
         other = "," if last == "." else "."
         decimal = digits.count(last) == 1
         groups = (whole if decimal else digits).split(other if decimal else last)
-        if not _grouped(groups):
+        mark = last if decimal else other
+        foreign = locale is not None and (mark == ",") != (locale in WITH_COMMA)
+        if foreign or not _grouped(groups):
             rule = "be a number with one decimal mark, and groups of three digits if any"
             raise EntryFault((), rule, sentence=Sentence("number-malformed"))
         return "".join(groups) + (f".{part}" if decimal else "")

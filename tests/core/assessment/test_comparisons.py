@@ -66,6 +66,7 @@ def test_limits_have_no_tolerance_and_an_order() -> None:
         lambda: SigFig(0),
         lambda: SigFig(16),
         lambda: DecDig(301),
+        lambda: DecDig(-16),
         lambda: Data(factor=0.0),
         lambda: Interval(math.nan, 1.0),
         lambda: Interval(0.0, math.inf),
