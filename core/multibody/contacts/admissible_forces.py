@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from flint import arb
@@ -32,13 +32,25 @@ class AdmissibleForce:
     terms : dict of int to ball
         Factors of multipliers, by the numbers of their rows.
     rubs : tuple of int
-        Rows of two components of friction in space, whose root of squares may not be above it.
+        Rows of the components of friction, whose root of squares may not be above it; one beside others of two.
     """
 
     number: int
     grips: bool
     terms: dict[int, Ball]
     rubs: tuple[int, ...] = ()
+
+    @property
+    def round(self) -> bool:
+        """Whether it is a cone in space, which is not linear."""
+        return len(self.rubs) > 1
+
+    def flat(self) -> list[AdmissibleForce]:
+        """Return it with a single component of friction as two linear conditions, else as it is."""
+        if len(self.rubs) != 1:
+            return [self]
+        (row,) = self.rubs
+        return [replace(self, terms={**self.terms, row: sense}, rubs=()) for sense in (ONE, -ONE)]
 
     @property
     def force(self) -> Force:
@@ -104,41 +116,39 @@ def admissible(
     one stands for what holds back the best share at the start. Where the dependence of the rows changes along the
     motion, the multipliers of redundant rows are taken as zero.
     """
-    single: list[AdmissibleForce] = []
-    for i in group:
-        row, stuck, one = phase.normal[i], phase.grip(i), unilateral[i]
-        if row is None:
-            continue
-        single.append(AdmissibleForce(i, False, {row: ONE}))
-        if len(stuck) == 1:
-            single.extend(AdmissibleForce(i, True, {row: one.static, stuck[0]: sense}) for sense in (ONE, -ONE))
-        elif stuck:
-            single.append(AdmissibleForce(i, True, {row: one.static}, tuple(stuck)))
-    # That what sticks pushes follows from its cone.
-    stuck_pushes = {one.number for one in single if one.grips}
-    needed = [one for one in single if one.grips or one.number not in stuck_pushes]
-    shares = _shares_of(needed, phase.table)
+    cones = _cones(unilateral, group, phase)
+    shares = _shares_of(cones, phase.table)
     if not shares:
+        single: list[AdmissibleForce] = []
+        for one in cones:
+            if one.grips:
+                # It follows from the cone, but what lets go is another event than what slips.
+                single.append(AdmissibleForce(one.number, False, dict.fromkeys(one.terms, ONE)))
+            single.extend(one.flat())
         return single
-    if not any(one.rubs for one in needed):
-        return _without_share(needed, shares)
+    if not any(one.round for one in cones):
+        return _without_share([flat for one in cones for flat in one.flat()], shares)
     start = np.array([float(x[0].mid()) if x else 0.0 for x in expansion(phase.table, 2).multipliers])
-    return [SharedCones(needed, shares).certificate(start)[1]]
+    return [SharedCones(cones, shares).certificate(start)[1]]
 
 
 def shared_cones(unilateral: Sequence[Unilateral], group: Sequence[int], phase: PhaseTable) -> SharedCones | None:
     """Return the load that measures share which stick in space, None where they share none."""
-    conditions = []
+    cones = _cones(unilateral, group, phase)
+    if not any(one.round for one in cones):
+        return None
+    shares = _shares_of(cones, phase.table)
+    return SharedCones(cones, shares) if shares else None
+
+
+def _cones(unilateral: Sequence[Unilateral], group: Sequence[int], phase: PhaseTable) -> list[AdmissibleForce]:
+    """Return of every closed measure its cone where it sticks, else its push."""
+    found = []
     for i in group:
         row, stuck = phase.normal[i], phase.grip(i)
-        if row is not None and len(stuck) == 2:
-            conditions.append(AdmissibleForce(i, True, {row: unilateral[i].static}, tuple(stuck)))
-        elif row is not None:
-            conditions.append(AdmissibleForce(i, False, {row: ONE}))
-    if not any(one.rubs for one in conditions):
-        return None
-    shares = _shares_of(conditions, phase.table)
-    return SharedCones(conditions, shares) if shares else None
+        if row is not None:
+            found.append(AdmissibleForce(i, bool(stuck), {row: unilateral[i].static if stuck else ONE}, tuple(stuck)))
+    return found
 
 
 def _without_share(conditions: Sequence[AdmissibleForce], shares: Sequence[dict[int, Ball]]) -> list[AdmissibleForce]:

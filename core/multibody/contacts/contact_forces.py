@@ -142,15 +142,16 @@ def balanced(
 
 
 def _cones(unilateral: Sequence[Unilateral], group: Sequence[int], states: Sequence[State]) -> list[Cone]:
-    """Return what has to hold of unknown forces: a push, and two components of friction of what sticks, in turn."""
+    """Return what has to hold of unknown forces: a push, and the components of friction of what sticks, in turn."""
     found: list[Cone] = []
     j = 0
     for i, state in zip(group, states, strict=True):
         if state is State.OPEN:
             continue
-        sticks = state is State.STICK
-        found.append(Cone(j, float(unilateral[i].static), (j + 1, j + 2)) if sticks else Cone(j))
-        j += 3 if sticks else 1
+        # A string that rubs has one component of friction, in space too.
+        rubs = tuple(range(j + 1, j + 1 + len(unilateral[i].slips))) if state is State.STICK else ()
+        found.append(Cone(j, float(unilateral[i].static), rubs) if rubs else Cone(j))
+        j += 1 + len(rubs)
     return found
 
 

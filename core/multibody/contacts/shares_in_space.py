@@ -53,8 +53,8 @@ class Cone:
     static : float
         Coefficient of friction, one where nothing sticks.
     rubs : tuple of int
-        Two components of friction, whose root of squares is at most the coefficient times the push; none where nothing
-        sticks.
+        One component of friction or two, whose root of squares is at most the coefficient times the push; none where
+        nothing sticks.
     """
 
     push: int
