@@ -252,10 +252,10 @@ def _onsets(
         slips = after([way])
         return None if slips is None else slips[0]
 
-    if len(onsets) == 1:
-        return [{onsets[0]: way} for way in directions(follows)]
     smooth = [replace(one, kinetic=ZERO) if i in onsets else one for i, one in enumerate(at.unilateral)]
     first = after([AHEAD] * len(onsets), smooth)
+    if len(onsets) == 1:
+        return [{onsets[0]: way} for way in directions(follows, first[0] if first else AHEAD)]
     together = directions_together(first, after) if first else []
     return None if together is None else [dict(zip(onsets, together, strict=True))] if together else []
 

@@ -87,7 +87,7 @@ def along_slip(
     return found
 
 
-def directions(after: Callable[[Direction], Direction | None]) -> list[Direction]:
+def directions(after: Callable[[Direction], Direction | None], smooth: Direction = AHEAD) -> list[Direction]:
     """Return the directions in which slip may follow.
 
     Parameters
@@ -95,15 +95,21 @@ def directions(after: Callable[[Direction], Direction | None]) -> list[Direction
     after : callable
         The components of the slip, or of its change, that follow if friction is against a direction; None where nothing
         follows.
+    smooth : (ball, ball)
+        Components of the slip that would follow without friction: what translates keeps that direction with it.
     """
 
     def off(direction: Direction) -> Ball | None:
         found = after(direction)
         return None if found is None else found[1] * direction[0] - found[0] * direction[1]
 
-    ahead = after(AHEAD)
-    if ahead is not None and is_zero(ahead[1]) and (is_zero(ahead[0]) or ahead[0] > 0):
-        return [AHEAD]
+    straight = is_zero(smooth[1]) and (is_zero(smooth[0]) or bool(smooth[0] > 0))
+    first = AHEAD if straight else one_of(smooth)
+    follows = after(first)
+    if follows is not None:
+        along, across = first[0] * follows[0] + first[1] * follows[1], first[0] * follows[1] - first[1] * follows[0]
+        if is_zero(across) and (is_zero(along) or along > 0):
+            return [first]
     # What is ahead but for rounding is between two samples.
     angles = [2 * pi * (k - 0.5) / _DIRECTIONS_TRIED for k in range(_DIRECTIONS_TRIED + 1)]
     values = [off((arb(cos(angle)), arb(sin(angle)))) for angle in angles]
