@@ -13,8 +13,8 @@ from core.arrays import Floats, Integers, largest_magnitude
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, LinearForm, Poly, entry
-from core.multibody.algebra.rank import independent
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, LinearForm, Poly, degree, entry, is_zero, substituted
+from core.multibody.algebra.rank import Elimination, independent
 from core.multibody.equations.dynamics import restricted, undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
 from core.multibody.laws.samples import values_of
@@ -66,6 +66,19 @@ class Whole:
                 else:
                     offsets[i] = pair(value, 0)
         return slopes, offsets
+
+    def keeps(self, measure: Poly) -> bool:
+        """Return whether an affine function of the coordinates as described is constant: by the passes and the rows.
+
+        A gap with friction is a coordinate that the passes leave, since its multiplier is needed; its row keeps it.
+        """
+        changes = substituted(measure, self.reduced.expressions)
+        held = Elimination()
+        for row in self.reduced.table.rows:
+            if all(degree(poly) <= 0 for poly in row.rates.values()):
+                held.add({j: poly[()] for j, poly in row.rates.items()}, row.rate)
+        free, rate = held.reduced({key[0]: x for key, x in changes.items() if key}, ZERO)
+        return degree(changes) <= 1 and not free and is_zero(rate)
 
     @property
     def uniform(self) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from core.errors import NotApplicable
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero, substituted
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero
 from core.multibody.contacts.complementarity import Decided
 from core.multibody.contacts.contact_responses import slip_rate
 from core.multibody.contacts.contact_start import ContactStart
@@ -259,15 +259,16 @@ def model_of(base: Described, decided: Decided, phase: PhaseTable, start: Contac
     measures = copy.copy(base.measures)
     measures.table = phase.table
     measures.forces = [*base.measures.forces, *forces_of(decided.unilateral, decided.states, phase)]
+    own = replace(base, measures=measures)
     if any(row.slide is not None for row in phase.table.rows):
-        return turning_model(replace(base, measures=measures), decided.unilateral, phase.normal, start)
-    found = models_of(replace(base, measures=measures), start.moved, start.fitted)
+        found = turning_model(own, decided.unilateral, phase.normal, start)
+    else:
+        found = models_of(own, start.moved, start.fitted)
+        for _, motion in found.whole.parts:
+            motion.keep_to_pairs()
     for kept in measures.kept:
-        changes = substituted(kept.measure, found.whole.reduced.expressions)
-        if any(key and not is_zero(x) for key, x in changes.items()):
+        if not found.whole.keeps(kept.measure):
             raise NotApplicable(kept.rule, path=kept.path, remedy=kept.remedy)
-    for _, motion in found.whole.parts:
-        motion.keep_to_pairs()
     return found
 
 

@@ -19,7 +19,8 @@ from flint import arb, arb_mat, arb_poly
 from core.arrays import Floats
 from core.balls import precision
 from core.errors import BudgetExceeded
-from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, is_zero
+from core.multibody.contacts.conditions_of_states import LOOKED
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.equations.dynamics import accelerations
 from core.multibody.equations.expansion import Expansion, expansion, saddle, slope, value
@@ -256,6 +257,10 @@ class TurningWhole(Whole):
             for k, r in enumerate(chosen):
                 found[s, r] = float(solved[count + k].mid())
         return gains, found
+
+    def keeps(self, measure: Poly) -> bool:
+        """Return whether a function of the coordinates is constant: without passes, its series has to say so."""
+        return all(is_zero(x) for x in expansion(self.measures.table, LOOKED).of(measure)[1:])
 
     def turns_with(self, force: Force) -> list[int]:
         """Return the rows of the pushes with which a force turns: none where its direction stays."""

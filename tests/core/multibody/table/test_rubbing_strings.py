@@ -29,6 +29,32 @@ def over(through: list[Any], speed: float = 0.0, heavy: float = 3, **more: Any) 
     }
 
 
+def over_an_edge(dimension: int, weight: float = 2, speed: float = 0, aside: float = 0) -> dict[str, Any]:
+    """Return a block of 1 kg on a rough table, with a rope that rubs over its edge to a weight.
+
+    In space the way of the block is turned by the angle of 3-4-5.
+    """
+
+    def place(x: float, z: float, y: float = 0) -> list[Any]:
+        return [x, z] if dimension == 2 else [f"({x})*4/5 - ({y})*3/5", f"({x})*3/5 + ({y})*4/5", z]
+
+    def velocity(x: float, z: float) -> list[Any]:
+        return [x, z] if dimension == 2 else place(x, z, aside)
+
+    table = {"at": place(0, 0), "normal": [0] * (dimension - 1) + [1]}
+    return {
+        "gravity": place(0, -G),
+        "bodies": {
+            "block": {"mass": 1, "at": place(-2, 0), "velocity": velocity(speed, 0)},
+            "weight": {"mass": weight, "at": place(0, -1), "velocity": place(0, -speed)},
+        },
+        "connections": [
+            {"kind": "contact", "name": "t", "place": "block", "on": table, "friction": 0.3},
+            {"kind": "string", "name": "s", "through": ["block", place(0, 0), "weight"], "friction": 0.1},
+        ],
+    }
+
+
 @pytest.mark.parametrize("through", [OVER_TWO_PEGS, OVER_TWO_PEGS[::-1]], ids=["forth", "back"])
 @pytest.mark.parametrize("turned", [False, True])
 def test_the_heavier_mass_sinks_by_the_ratio_of_the_capstan(through: list[Any], turned: bool) -> None:
@@ -113,14 +139,74 @@ def test_in_space_it_holds_as_in_the_plane() -> None:
         (over(OVER_TWO_PEGS, -2, friction=[0.5, 0.2]), [0.0, 0.2, 0.5]),
         (over(OVER_TWO_PEGS, -2, heavy=1.1, friction=0.2, length=2.5), [0.0, 0.3, 0.6]),
         (over(OVER_TWO_PEGS, -1, friction=0.1, restitution=0.5, length=2.3), [0.0, 0.2, 0.4]),
+        (over_an_edge(2, speed=-1), [0.0, 0.1, 0.3]),
+        (over_an_edge(3, speed=-1), [0.0, 0.1, 0.3]),
     ],
-    ids=["sticks", "becomes taut", "jerks"],
+    ids=["sticks", "becomes taut", "jerks", "over an edge", "over an edge in space"],
 )
 def test_the_plain_engine_agrees(scene: dict[str, Any], times: list[float]) -> None:
     verdict = compared(scene, times)
     assert verdict.differences == []
     assert not verdict.not_supported
     assert verdict.compared > 0
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("turned_round", [False, True])
+def test_a_weight_draws_a_block_on_a_rough_table_over_its_edge(dimension: int, turned_round: bool) -> None:
+    """T_1 - mu m g = m a and M g - k T_1 = M a: a = g (M - mu k m)/(M + k m) with k = exp(mu' pi/2)."""
+    k = math.exp(0.1 * math.pi / 2)
+    gain = G * (2 - 0.3 * k) / (2 + k)
+    for speed in (0.0, 1.0):
+        scene = over_an_edge(dimension, speed=speed)
+        if turned_round:
+            scene["connections"].reverse()
+            scene["connections"][0]["through"].reverse()
+        answer = solve_scene(read(scene), [0.0, 0.3], ["trajectory", "forces"])
+        assert answer.model.name == "constant acceleration"
+        fall = column(answer, "weight.velocity").values
+        assert fall[0][-1] - fall[1][-1] == pytest.approx(0.3 * gain, rel=1e-12)
+        assert force(answer, "s.1.tension" if turned_round else "s.2.tension") == pytest.approx(2 * (G - gain))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_light_weight_leaves_the_block_at_rest(dimension: int) -> None:
+    answer = solve_scene(read(over_an_edge(dimension, weight=0.2)), [0.0, 0.3], ["trajectory"])
+    assert answer.model.name == "rest"
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_block_under_the_peg_is_held_by_floor_and_string(dimension: int) -> None:
+    """How floor and string share its weight is not determined: the tensions are within exp(mu pi) of one another."""
+    between = [0.0] * (dimension - 2)
+    weight = {"mass": 0.1, "at": [3, *between, 0]}
+    through = ["block", [0, *between, 1], [3, *between, 1], "weight"]
+    floor = {"at": [0, *between, 0], "normal": [0, *between, 1]}
+    scene = {
+        "gravity": [0, *between, -G],
+        "bodies": {"block": {"mass": 1, "at": [0, *between, 0]}, "weight": weight},
+        "connections": [
+            {"kind": "contact", "name": "t", "place": "block", "on": floor, "friction": 0.3},
+            {"kind": "string", "name": "s", "through": through, "friction": 0.1},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 0.3], ["trajectory", "forces"])
+    assert answer.model.name == "rest"
+    assert force(answer, "s.2.tension") == pytest.approx(0.1 * G, rel=1e-13)
+    assert answer.forces is not None
+    assert answer.forces["s.1.tension"].value is None
+    weight["mass"] = 2
+    answer = solve_scene(read(scene), [0.0, 0.3], ["trajectory"])
+    # Lifted as in Atwood's machine.
+    k = math.exp(0.1 * math.pi)
+    lifted = column(answer, "block.velocity").values[1][-1]
+    assert lifted == pytest.approx(0.3 * G * (2 - k) / (2 + k), rel=1e-12)
+
+
+def test_a_block_that_slides_askew_is_refused() -> None:
+    """Also where its friction turns with the slip."""
+    with pytest.raises(NotApplicable, match="change their directions"):
+        solve_scene(read(over_an_edge(3, speed=1, aside=0.1)), [0.3], ["trajectory"])
 
 
 def test_a_string_whose_parts_swing_is_refused() -> None:
