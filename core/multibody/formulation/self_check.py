@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from flint import arb
 
 from core.errors import SelfCheckFailed
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
+from core.multibody.algebra.polynomials import ONE, Ball, evaluated, is_zero
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.trigonometric_sums import Sum
 
@@ -41,11 +41,7 @@ def check_formula(
     SelfCheckFailed
         If they differ by more than the digits of formulas.
     """
-    known = {name: x * ROUNDING for name, x in places.items()}
-    # Every term is known to the digits of its number.
-    off = Sum({term: x * ROUNDING for term, x in formula.terms.items()}).value(known, rates) - value
-    if not is_zero(off):
-        raise SelfCheckFailed(f"the formula of the {law}", of, 0.0, float(abs(off.mid())), float(off.rad()))
+    _require(law, of, _enclosed(formula, places, rates) - value)
 
 
 def check_chart(chart: Chart) -> None:
@@ -58,8 +54,22 @@ def check_chart(chart: Chart) -> None:
     """
     state = chart.start, chart.rates
     beside = [{name: x + ONE / (ASIDE + k) for k, (name, x) in enumerate(one.items())} for one in state]
+    q = [_enclosed(place, *beside) for place in chart.places]
+    v = [_enclosed(place.rate(), *beside) for place in chart.places]
     for row in chart.table.rows:
         if any(row is left for left in chart.rows):
             continue
-        held = chart.rates_of(row) if row.measure is None else Sum.of(row.measure, chart.places)
-        check_formula("constraint", row.name, held, ZERO, *beside)
+        # By numbers: in a sum of formulas what nearly cancels has lost the size of its terms.
+        rates = sum((evaluated(poly, q) * v[j] for j, poly in row.rates.items()), -row.rate)
+        _require("constraint", row.name, rates if row.measure is None else evaluated(row.measure, q))
+
+
+def _enclosed(formula: Sum, places: Mapping[str, Ball], rates: Mapping[str, Ball]) -> Ball:
+    """Return the value of a formula of which every number is known to its digits."""
+    known = {name: x * ROUNDING for name, x in places.items()}
+    return Sum({term: x * ROUNDING for term, x in formula.terms.items()}).value(known, rates)
+
+
+def _require(law: str, of: str, off: Ball) -> None:
+    if not is_zero(off):
+        raise SelfCheckFailed(f"the formula of the {law}", of, 0.0, float(abs(off.mid())), float(off.rad()))

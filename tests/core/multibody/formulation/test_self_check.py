@@ -15,6 +15,8 @@ from core.multibody.formulation.self_check import check_chart, check_formula
 from core.multibody.formulation.trigonometric_sums import Sum
 from core.multibody.table.table import Row, Table
 from tests.core.multibody.formulation.test_scene_equations import answer_of, scene_of
+from tests.core.multibody.relations.sources import catalogue
+from tests.core.multibody.relations.writing import in_units
 
 X, ANGLE = Sum.variable("x"), Sum.cosine("a")
 PLACES, RATES = {"x": arb(2), "a": arb(1000)}, {"x": arb(-3)}
@@ -56,6 +58,14 @@ def test_a_chart_that_is_right_at_the_start_alone_is_withheld() -> None:
         chart.places[1] = Sum.number(ONE)
         with pytest.raises(SelfCheckFailed, match="inverse"):
             check_chart(chart)
+
+
+@pytest.mark.parametrize("name", ["crank-slider", "kapitza-pendulum"])
+def test_factors_of_fifteen_digits_inside_of_sines_are_allowed_for(name: str) -> None:
+    """In units of three the rates of the cranks have no end of digits."""
+    made = in_units(catalogue()[name], 3, 3, 3)
+    assert made is not None
+    assert answer_of(scene_of(made.request)).equations is not None
 
 
 def test_a_wrong_formula_is_never_answered(monkeypatch: pytest.MonkeyPatch) -> None:
