@@ -153,7 +153,7 @@ class Formula:
         reader = _Reader(_tokens(text, known), known, functions)
         root = reader.sum()
         if reader.at != len(reader.tokens):
-            raise InvalidParameter((), "be one complete formula")
+            raise reader.left_over()
         return cls(root, frozenset(reader.names))
 
     def value(self, names: Mapping[str, T], arithmetic: Arithmetic[T]) -> T:
@@ -313,6 +313,16 @@ class _Reader:
             self.at += 1
             return sign
         return ""
+
+    def left_over(self) -> InvalidParameter:
+        """Return the fault of a text that goes on behind a formula: most often behind a decimal comma."""
+        before, sign, after = [*self.tokens, ("", "", "")][max(self.at - 1, 0) :][:3]
+        if sign[2] == "," and before[0].isdigit() and after[0].isdigit():
+            written = f"{before[0]},{after[0]}"
+            return InvalidParameter(
+                (), f'have decimal points, unlike "{written}"', remedy=f"write {written.replace(',', '.')}"
+            )
+        return InvalidParameter((), "be one complete formula")
 
     def _enter(self) -> None:
         self.depth += 1

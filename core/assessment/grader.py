@@ -43,6 +43,7 @@ from core.assessment.terms import Terms
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path, pointer_of
 from core.formulas import Formula, UnknownName
+from core.near_names import did_you_mean
 from core.work import spend
 
 if TYPE_CHECKING:
@@ -260,7 +261,8 @@ class Grader:
             reference = self._question.reference(path)
             if reference is None:
                 rule = "lead to a figure of the answer: a number, an array, a string, true or false"
-                raise InvalidParameter((), rule, remedy=self._deeper(path))
+                remedy = self._deeper(path) or self._beside(path)
+                raise EntryFault((), rule, remedy=remedy, sentence=Sentence("figure-unknown"))
             self.references[pointer] = reference
         return self.references[pointer]
 
@@ -270,6 +272,11 @@ class Grader:
         names = ["value"] if "value" in names else names[:MOST_NAMED]
         pointers = [pointer_of((*path, name)) for name in names]
         return f"an object stands there; name its figure: {' or '.join(pointers)}" if pointers else None
+
+    def _beside(self, path: Path) -> str | None:
+        """Return the figure that was probably meant by a pointer that leads nowhere: one beside it."""
+        names = {pointer_of((*path[:-1], name)) for name in self._question.figures_in(path[:-1])} if path else ()
+        return did_you_mean(pointer_of(path), sorted(names))
 
     def _column(self, path: Path, times: Floats) -> Reference:
         try:

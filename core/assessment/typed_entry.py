@@ -24,8 +24,10 @@ _SIGNS = str.maketrans(
 _OPERATORS = str.maketrans({"×": "*", "⋅": "*", "·": "*", "÷": "/", "√": "sqrt"})
 """Signs that mean something else in formulas only: a unit may have its dots."""
 _RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
-_NAMED = re.compile(r"(?:[^\W\d]\w*)?\s*[=≈~]\s*")
-"""What stands before the answer itself: ``T = 6.28 s``."""
+_NAMED = re.compile(
+    r"(?:(?:[^\W\d]\w*)?\s*[=≈~]\s*)?(?:(?:ca|circa|approx|aprox|env|environ|etwa)\b\.?\s*(?=[-+\d.,]))?", re.IGNORECASE
+)
+"""What stands before the answer itself: ``T = 6.28 s``, ``≈ 6.28 s``, ``ca. 6.28 s``."""
 _IN_FORMULA = re.compile(rf"(?<![\w.,]){DIGITS}")
 _FUNCTION = rf"(?:pi\b|(?:{'|'.join(NAMES_OF_FUNCTIONS)})\s*\()"
 """Pattern of what begins a factor of a formula, and no unit: ``min`` is a minute, and ``min(`` a function."""

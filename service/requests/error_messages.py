@@ -54,8 +54,14 @@ _REMEDIES: Mapping[str, str] = {
     "int_type": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
     "int_from_float": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
     "finite_number": "NaN, infinities and numbers beyond 1.8e308 are not read",
-    "neither": "give numbers in an array, or start, stop and count in an object",
 }
+_SPANNED = "give numbers in an array, or start, stop and count in an object"
+_KEYS: Mapping[str, str] = {
+    "bodies": 'write {"name": {...}}: its keys are the names of the bodies',
+    "places": 'write {"name": [...]}: its keys are the names of the places',
+    "let": 'write {"name": ...}: its keys are the names of the numbers',
+}
+"""Remedies of objects whose keys the client chooses."""
 _TYPES = ("model_type", "dataclass_type", "list_type", "tuple_type")
 _OBJECTS = ("model_type", "dataclass_type", "dict_type")
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
@@ -138,6 +144,12 @@ class Wording:
             return Fault(pointer_of((*steps, discriminator)), detail, near and f"{_MEANT}'{near}'?")
         if kind == "union_tag_not_found":
             return Fault(pointer_of(steps), detail, f"its values here: {', '.join(self._layout.tags.get(named, ()))}")
+        if kind == "neither":
+            names = self._layout.names.get(named, ())
+            keys = f"give an object, or an array of objects, with the keys {', '.join(names)}" if names else None
+            return Fault(pointer_of(steps), detail, _SPANNED if _SPAN.issubset(names) or named == "times" else keys)
+        if kind == "dict_type" and named in _KEYS:
+            return Fault(pointer_of(steps), detail, _KEYS[named])
         if kind in _OBJECTS and named in self._layout.tags:
             # A client that gives a name alone meant the kind.
             return Fault(

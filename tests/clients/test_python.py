@@ -377,3 +377,23 @@ def test_it_is_imported_in_a_checkout_in_which_nothing_was_built(tmp_path: Path)
         command, capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": str(tmp_path / "python")}
     )
     assert done.stdout == "precession\n", done.stderr
+
+
+def test_where_no_service_answers_one_line_names_the_address() -> None:
+    def refuse(request: httpx.Request) -> httpx.Response:
+        raise httpx.ConnectError("[Errno 111] Connection refused", request=request)
+
+    with (
+        Client("http://polhode.invalid:8000", transport=httpx.MockTransport(refuse)) as polhode,
+        pytest.raises(httpx.ConnectError, match=r"^no service answers at http://polhode\.invalid:8000: .*refused$"),
+    ):
+        polhode.precession(body={"kind": "principal-moments", "moments": [1, 1, 2]}, angular_velocity=[1, 1, 1])
+
+    async def asked() -> None:
+        async with AsyncClient("http://polhode.invalid:8000", transport=httpx.MockTransport(refuse)) as polhode:
+            await polhode.precession(
+                body={"kind": "principal-moments", "moments": [1, 1, 2]}, angular_velocity=[1, 1, 1]
+            )
+
+    with pytest.raises(httpx.ConnectError, match=r"^no service answers at http://polhode\.invalid:8000: "):
+        asyncio.run(asked())

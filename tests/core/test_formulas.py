@@ -93,6 +93,19 @@ def test_hostile_texts_are_refused(text: str) -> None:
     assert fault.value.rule
 
 
+@pytest.mark.parametrize(("text", "mark"), [("-9,81", "9,81"), ("M*1,5", "1,5"), ("1,5*M", "1,5")])
+def test_a_decimal_comma_is_named(text: str, mark: str) -> None:
+    with pytest.raises(InvalidParameter, match=f'decimal points, unlike "{mark}"') as fault:
+        Formula.read(text, NAMES)
+    assert fault.value.remedy == f"write {mark.replace(',', '.')}"
+
+
+@pytest.mark.parametrize("text", ["M, g", "1,", "1.5,5", ",5"])
+def test_another_comma_is_not(text: str) -> None:
+    with pytest.raises(InvalidParameter, match="complete formula"):
+        Formula.read(text, NAMES)
+
+
 @given(text=st.text(alphabet="Mg()+-*/^.0123456789e sqrt", max_size=60))
 def test_any_text_is_a_formula_or_refused(text: str) -> None:
     try:

@@ -60,8 +60,8 @@ class Client(Settings, Operations):
     """A connection to a Polhode service; each operation is a method that takes the fields of the question.
 
     The parameters are those of `Settings`, and `transport`, an `httpx.BaseTransport` in place of a connection. Methods
-    raise `Refused` with the service's problem, and `httpx.HTTPError` if the service cannot be reached;
-    `httpx.TimeoutException`, one of those, after the timeout.
+    raise `Refused` with the service's problem, and `httpx.HTTPError` if the service cannot be reached: mostly
+    `httpx.ConnectError`, with its address; `httpx.TimeoutException` after the timeout.
 
     Examples
     --------
@@ -119,7 +119,10 @@ class Client(Settings, Operations):
     def _received(self, sent: Sent) -> Received:
         until = time.monotonic() + self.timeout
         request = _request(self._http, sent, self.timeout)
-        response = self._http.send(request, stream=True)
+        try:
+            response = self._http.send(request, stream=True)
+        except httpx.ConnectError as error:
+            raise _unreachable(self.url, error, request) from None
         try:
             parts = []
             for part in response.iter_bytes():
@@ -178,7 +181,10 @@ class AsyncClient(Settings, AsyncOperations):
     async def _received(self, sent: Sent) -> Received:
         until = time.monotonic() + self.timeout
         request = _request(self._http, sent, self.timeout)
-        response = await self._http.send(request, stream=True)
+        try:
+            response = await self._http.send(request, stream=True)
+        except httpx.ConnectError as error:
+            raise _unreachable(self.url, error, request) from None
         try:
             parts = []
             async for part in response.aiter_bytes():
@@ -191,6 +197,10 @@ class AsyncClient(Settings, AsyncOperations):
 
 def _request(http: C, sent: Sent, timeout: float) -> httpx.Request:
     return http.build_request(sent.method, sent.path, headers=sent.headers, content=sent.body, timeout=timeout)
+
+
+def _unreachable(url: str, error: httpx.ConnectError, request: httpx.Request) -> httpx.ConnectError:
+    return httpx.ConnectError(f"no service answers at {url}: {error}", request=request)
 
 
 def _require_time(until: float, request: httpx.Request) -> None:

@@ -11,6 +11,7 @@ ENGLISH: Mapping[str, str] = {
     "missing-unit": "The unit is missing.",
     "not-gradable": "This answer cannot be graded: the tolerance is finer than the reference value is known.",
     "unreadable": "This answer cannot be read.",
+    "figure-unknown": "This cannot be graded: the question has no such figure. Please tell your course staff.",
     "carried": "Not the expected value, but consistent with your earlier result.",
     "several": "Each of the following mistakes leads to this value.",
     "sensitive": "Compare {name}: the value itself is so close to a constant that it hides the error.",

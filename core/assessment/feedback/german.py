@@ -12,6 +12,8 @@ GERMAN: Mapping[str, str] = {
     "not-gradable": "Diese Antwort lässt sich nicht bewerten: Die Toleranz ist enger, als der Vergleichswert "
     "bekannt ist.",
     "unreadable": "Diese Eingabe ist nicht lesbar.",
+    "figure-unknown": "Das kann nicht bewertet werden: Die Aufgabe hat keine solche "
+    "Größe. Bitte der Kursleitung melden.",
     "carried": "Nicht der erwartete Wert, aber aus dem vorherigen Ergebnis richtig berechnet (Folgefehler).",
     "several": "Jeder der folgenden Fehler führt auf diesen Wert.",
     "sensitive": "Vergleichen Sie {name}: Der Wert selbst liegt so nahe an einer Konstanten, dass der Fehler kaum "

@@ -12,6 +12,7 @@ SPANISH: Mapping[str, str] = {
     "not-gradable": "Esta respuesta no se puede calificar: la tolerancia es más fina que la precisión del valor de "
     "referencia.",
     "unreadable": "Esta respuesta no se puede leer.",
+    "figure-unknown": "No se puede evaluar: la pregunta no tiene esa magnitud. Avise al equipo del curso.",
     "carried": "No es el valor esperado, pero es coherente con su resultado anterior.",
     "several": "Cada uno de los errores siguientes conduce a este valor.",
     "sensitive": "Compare {name}: el valor mismo está tan cerca de una constante que apenas muestra el error.",

@@ -21,7 +21,10 @@ def with_nearest(fault: PlacesDisagree, scene: Scene) -> PlacesDisagree:
     try:
         found = assembled(replace(scene, assemble="nearest")).assembly
     except MechanicsError as worse:
-        # No places satisfy them, or none is the nearest: that says more than a body that should be moved.
+        if worse.path[:1] == ("assemble",):
+            # None is the nearest, which nobody asked for.
+            return fault
+        # No places satisfy them: that says more than a body that should be moved.
         return PlacesDisagree(fault.path, fault.rule, remedy=f"{worse.detail}; {worse.remedy}", further=fault.further)
     assert found is not None, "nearest places were requested"
     moved = {name: body for name, body in found.bodies.items() if body.moved > 0.0 or body.turned != 0.0}

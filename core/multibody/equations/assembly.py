@@ -49,7 +49,7 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
             raise PlacesDisagree(
                 paths.get(row.name, ()),
                 f'agree with the positions: "{row.name}" misses them by {as_text(abs(residual), 3)}'
-                f" ({as_text(abs(residual) / scale, 2)} of its terms)",
+                f" (of the sizes of the terms of its equation, {as_text(abs(residual) / scale, 2)} is left over)",
                 remedy="move the bodies so that connected places meet",
             )
         if row.name not in moved:

@@ -149,7 +149,7 @@ class FormulaRows:
         """Return coordinates that are functions of a polynomial, whose rate row is added next."""
         if self.measures.sketch and not self._is_timed(argument):
             rule = "have no functions of places or angles other than square roots"
-            raise InvalidParameter(self.path, rule, remedy="give the places exactly, without assemble")
+            raise InvalidParameter(self.path, rule, remedy="give the places exactly")
         return [self._coordinate(value, argument) for value in values(self._value(argument))]
 
     def _tie(self, found: Sequence[Poly], values: Callable[[Ball], Sequence[Ball]], argument: Poly) -> None:

@@ -101,6 +101,8 @@ def test_when_a_motion_can_be_answered_is_not_said_without_reveal() -> None:
         ("/force", "an object stands there; name its figure: /force/value"),
         ("/mass", "an object stands there; name its figure: /mass/own or /mass/parts or /mass/total"),
         ("/nothing", None),
+        ("/frce/value", None),
+        ("/force/valu", 'did you mean "/force/value"?'),
         ("/nothing/deeper", None),
         ("/force/parts/5", None),
     ],
@@ -108,6 +110,8 @@ def test_when_a_motion_can_be_answered_is_not_said_without_reveal() -> None:
 def test_a_pointer_that_stops_at_an_object_is_answered_with_the_figures_in_it(pointer: str, remedy: str | None) -> None:
     found = grader().judged({pointer: {"value": 1.0, "unit": "N"}})
     assert [fault.remedy for fault in found.faults] == [remedy]
+    # The staff has to mend it: to who answered it is no fault of the entry.
+    assert found.feedback("en").startswith("This cannot be graded")
 
 
 def test_mistakes_that_give_the_same_value_are_numbered() -> None:

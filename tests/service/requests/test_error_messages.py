@@ -234,3 +234,21 @@ def test_a_torque_is_answered_with_that_only_torque_free_motion_is_answered(key:
 def test_a_torque_on_a_scene_is_any_unknown_key() -> None:
     found = errors({**ROD, "torque": 1.0}, "/v1/scenes/rod-in-hole")
     assert found[0][1] == "is not known here"
+
+
+def test_an_array_or_a_name_in_place_of_an_object_is_answered_with_what_the_object_has() -> None:
+    scene = {"gravity": [0, -9.81], "bodies": [{"mass": 1, "at": [0, 1]}], "times": [0, 1]}
+    assert errors(scene, "/v1/scenes") == [
+        ("/bodies", "must be an object", 'write {"name": {...}}: its keys are the names of the bodies')
+    ]
+    sought = {
+        "question": {"path": "/v1/scenes", "request": {}},
+        "vary": "h",
+        "until": {"figure": "/period", "equals": 8},
+    }
+    [(pointer, detail, remedy)] = errors(sought, "/v1/find")
+    assert (pointer, detail) == ("/vary", "must be an object or an array")
+    assert remedy == "give an object, or an array of objects, with the keys pointer, between, scale"
+    assert errors(asked(times="h")) == [
+        ("/times", "must be an object or an array", "give numbers in an array, or start, stop and count in an object")
+    ]

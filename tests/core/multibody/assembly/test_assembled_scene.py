@@ -235,3 +235,11 @@ def test_a_sketch_whose_size_is_a_power_of_ten_is_assembled(size: str) -> None:
     bodies = {"p": {"mass": 1, "at": ["0.6*1.1", "-0.8*1.1"]}, "far": {"mass": 1, "at": [size, 0]}}
     place = assembly_of(sketch(bodies, [rod])).bodies["p"].at
     assert [float(x) for x in place] == pytest.approx([0.6, -0.8], abs=1e-15)
+
+
+def test_places_that_disagree_are_refused_without_a_word_of_a_sketch_that_nobody_asked_for() -> None:
+    """Of what is held at a transcendental function no nearest places are sought."""
+    held = {"kind": "relation", "of": "bob.x - exp(bob.y)", "equals": 5}
+    with pytest.raises(InvalidParameter) as refused:
+        solve_scene(read({"gravity": [0, -9.81], "bodies": {"bob": BOB}, "connections": [held]}))
+    assert "assemble" not in f"{refused.value.rule} {refused.value.remedy}"
