@@ -63,6 +63,17 @@ class UnknownName(InvalidParameter):
         super().__init__(path, rule, remedy=remedy, further=further)
         self.name = name
 
+    @classmethod
+    def among(cls, name: str, known: Collection[str], functions: Collection[str]) -> UnknownName:
+        """Return the fault of a name that is none of some names and functions, with the one that was probably meant."""
+        near, here = did_you_mean(name, [*known, *functions]), _names_here(known, functions)
+        remedy = here if near is None else f"{near} {here}"
+        return cls((), f'use known names, unlike "{name}"', remedy=remedy, name=name)
+
+    def inside(self, *outer: str | int) -> UnknownName:
+        """Return the same error with the path from an enclosing object."""
+        return UnknownName((*outer, *self.path), self.rule, remedy=self.remedy, name=self.name)
+
 
 def is_name(text: object) -> bool:
     """Return whether something can be called that in a formula: letters, digits and _, and no function."""
@@ -283,14 +294,7 @@ class _Reader:
         function = _ALSO.get(name, name)
         if function in self.functions:
             return Node(function, inner=self._arguments(ARGUMENTS.get(function, 1)))
-        shown, remedy = name[:64], self._remedy(name)
-        raise UnknownName((), f'use known names, unlike "{shown}"', remedy=remedy, name=shown)
-
-    def _remedy(self, name: str) -> str:
-        """Return the name that was probably meant, and those that there are."""
-        near = did_you_mean(name, [*self.known, *self.functions])
-        here = _names_here(self.known, self.functions)
-        return here if near is None else f"{near} {here}"
+        raise UnknownName.among(name[:64], self.known, self.functions)
 
     def _parenthesis(self) -> Node:
         return self._arguments(1)[0]

@@ -109,7 +109,7 @@ class _Expanding:
         try:
             formula = Formula.read(text, known, (*MOTION_FUNCTIONS, *self.numerals.tables))
         except InvalidParameter as fault:
-            raise InvalidParameter((*self.path, *fault.path), fault.rule, remedy=fault.remedy) from None
+            raise fault.inside(*self.path) from None
         return self._expanded(formula.root)
 
     def _expanded(self, node: Node) -> Node:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from core.balls import as_text
 from core.errors import InvalidParameter, Path, PlacesDisagree
+from core.formulas import UnknownName
 from core.multibody.algebra.polynomials import ONE, Poly, constant, difference, evaluated, size
 from core.multibody.language.joints import Relation
-from core.multibody.language.motion_formulas import TIME, TURNS
+from core.multibody.language.motion_formulas import MOTION_FUNCTIONS, TIME, TURNS, names_of_bodies
+from core.multibody.language.switches import SWITCHING
 from core.multibody.table.formula_laws import formula_at, input_of
 from core.multibody.table.formulas_of_time import FormulaRows
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.rows import add_rows
+
+_HELD = ("x", "y", "z", "angle", "turn")
+"""Last parts of the names of what a relation holds: places and angles."""
 
 
 @add_rows.register
@@ -33,7 +38,15 @@ def relation(connection: Relation, measures: Measures, name: str, path: Path) ->
 
 def _side(measures: Measures, name: str, value: object, path: Path) -> tuple[Poly, frozenset[str]]:
     """Return one side of a relation, and the names of its formula."""
-    formula = formula_at(measures, value, (), path)
+    try:
+        formula = formula_at(measures, value, (), path)
+    except UnknownName as fault:
+        # Of rates and of functions of several pieces formulas know, and relations do not.
+        numerals, bodies = measures.numerals, measures.coordinates.scene.bodies
+        names = [one for one in names_of_bodies(bodies, measures.dimension) if one.rpartition(".")[2] in _HELD]
+        functions = [one for one in MOTION_FUNCTIONS if one not in SWITCHING]
+        known = [*numerals.let, *numerals.formulas, TIME, *names]
+        raise UnknownName.among(fault.name, known, functions).inside(*path) from None
     if formula is None:
         return constant(measures.numerals.number(value, path)), frozenset()
     inputs = {one: input_of(measures, one, {}, path) for one in sorted(formula.names)}

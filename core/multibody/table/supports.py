@@ -154,7 +154,7 @@ def support(measures: Measures, name: str, side: Side, n: Sequence[Poly], path: 
     if not reach > 0:
         raise InvalidParameter(
             path,
-            "start inclined: where a disc lies flat, or a cylinder stands, all of its rim touches",
+            "start inclined, above the plane too: of the level rim of a disc or cylinder no point is the lowest",
             remedy="turn the body by its axes, or describe places of its rim that touch",
         )
     h = table.coordinate(f"{name}.reach", "m", reach.sqrt())

@@ -179,3 +179,12 @@ def test_places_that_do_not_fit_a_relation_are_refused_with_the_nearest() -> Non
         answer(point(0, "0.5", relation("p.y", "p.x")))
     assert refused.value.remedy is not None
     assert "[0.25, 0.25]" in refused.value.remedy
+
+
+def test_an_unknown_name_is_answered_with_what_relations_may_have() -> None:
+    with pytest.raises(InvalidParameter, match='use known names, unlike "foo"') as refused:
+        answer(point(0, 1, relation("foo(p.x)")))
+    assert (refused.value.path, refused.value.remedy) == (
+        ("connections", 0, "of"),
+        "names: p.x, p.y, t; functions: sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, atan2",
+    )
