@@ -11,6 +11,7 @@ import asyncio
 import zttp
 from uvicorn.protocols.http.zttp_impl import ZttpProtocol
 
+from service.http import one_write
 from service.http.one_write import OneWrite
 from service.problems import MEDIA_TYPE, REGISTRY, Problem
 
@@ -33,6 +34,7 @@ class Connection(ZttpProtocol):
     """
 
     _late: asyncio.TimerHandle | None = None
+    _rest: asyncio.TimerHandle | None = None
     _refused = False
     _out: OneWrite
 
@@ -57,11 +59,25 @@ class Connection(ZttpProtocol):
         if self.transport.is_closing():
             self._out.drop(data)
             return
+        answered = self.cycle
+        if self._rest is not None:
+            self._out.drop(data)
+            if self.transport.is_closing():
+                return
         super().data_received(data)
+        if self._rest is not None and (self.cycle is not answered or not self.cycle.more_body):
+            self._expect_no_rest()
         if self.cycle is not None and not self.cycle.response_complete:
             self._unlimit()
         elif self._late is None:
             self._limit()
+
+    def on_response_complete(self) -> None:
+        """Drop what is left of a body that was answered early, for a while; a longer one ends the connection."""
+        super().on_response_complete()
+        if self.cycle.more_body and not self.transport.is_closing():
+            self._out.begin_to_drop()
+            self._rest = self.loop.call_later(one_write.LINGERING, self.transport.close)
 
     def handle_events(self, event: zttp.Event) -> None:
         """Begin requests; what uvicorn cannot decode is refused."""
@@ -89,6 +105,7 @@ class Connection(ZttpProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """Stop waiting."""
         self._unlimit()
+        self._expect_no_rest()
         self._out.lost()
         super().connection_lost(exc)
 
@@ -103,3 +120,8 @@ class Connection(ZttpProtocol):
         if self._late is not None:
             self._late.cancel()
             self._late = None
+
+    def _expect_no_rest(self) -> None:
+        if self._rest is not None:
+            self._rest.cancel()
+            self._rest = None

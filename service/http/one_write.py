@@ -15,7 +15,8 @@ from collections.abc import Callable
 from typing import Any
 
 LINGERING = 2.0
-"""Seconds for which a closing connection drops what the client still sends: ten round trips around the world."""
+"""Seconds for which a connection drops what the client still sends of a body that is answered, and once more when it
+closes: ten round trips around the world."""
 
 MOST_DROPPED = 16_000_000
 """Bytes that are dropped at most in this time: two of the longest bodies that are answered by default."""
@@ -49,7 +50,7 @@ class OneWrite:
         self._loop, self._patience, self._sending = loop, patience, sending
         self._look: asyncio.TimerHandle | None = None
         self._end: asyncio.TimerHandle | None = None
-        self._bearable = MOST_DROPPED
+        self.begin_to_drop()
 
     def write(self, data: bytes) -> None:
         """Hold the first part; write it with the second; nothing behind the end."""
@@ -79,8 +80,12 @@ class OneWrite:
         """Return whether nothing is answered any more."""
         return self._end is not None or self._transport.is_closing()
 
+    def begin_to_drop(self) -> None:
+        """Count from now on what is dropped."""
+        self._bearable = MOST_DROPPED
+
     def drop(self, data: bytes) -> None:
-        """Read what comes behind the end; no more of it than is bearable."""
+        """Read what nobody needs; no more of it than is bearable."""
         self._bearable -= len(data)
         if self._bearable < 0:
             self._close()

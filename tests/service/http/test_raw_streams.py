@@ -282,6 +282,45 @@ async def test_a_client_that_is_still_sending_can_read_why_it_is_refused(begin: 
 
 
 @pytest.mark.parametrize(("bound", "value"), [("MOST_DROPPED", 50_000), ("LINGERING", 0.01)])
+@pytest.mark.parametrize("begin", [b"POST /v1/nothing", b"DELETE /v1/scenes", b"GET /healthz"])
+async def test_what_is_left_of_a_body_that_is_answered_is_not_dropped_for_ever(
+    monkeypatch: pytest.MonkeyPatch, bound: str, value: float, begin: bytes
+) -> None:
+    monkeypatch.setattr(one_write, "LINGERING", 600.0)
+    monkeypatch.setattr(one_write, bound, value)
+    async with serving() as port:
+        _, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(begin + b" HTTP/1.1\r\nhost: x\r\ncontent-length: 700000000\r\n\r\n")
+
+        async def send_for_ever() -> None:
+            while True:
+                writer.write(b"a" * 5_000)
+                await writer.drain()
+                await asyncio.sleep(0.01)
+
+        with pytest.raises(ConnectionError):
+            await asyncio.wait_for(send_for_ever(), PATIENCE)
+
+
+async def test_a_body_that_arrives_behind_its_answer_leaves_the_connection_open(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(one_write, "MOST_DROPPED", 50_000)
+    monkeypatch.setattr(one_write, "LINGERING", 0.2)
+    async with serving() as port:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        # Bytes are counted, and time is, for each of the bodies by itself.
+        for _ in range(3):
+            writer.write(b"POST /v1/nothing HTTP/1.1\r\nhost: x\r\ncontent-length: 30000\r\n\r\n")
+            assert statuses(await reader.readuntil(b"}")) == [404]
+            writer.write(b"a" * 30_000)
+            await asyncio.sleep(0.3)
+        writer.write(LAST)
+        assert statuses(await asyncio.wait_for(reader.read(), PATIENCE)) == [200]
+        writer.close()
+
+
+@pytest.mark.parametrize(("bound", "value"), [("MOST_DROPPED", 50_000), ("LINGERING", 0.01)])
 async def test_what_is_sent_to_a_closing_connection_is_not_dropped_for_ever(
     monkeypatch: pytest.MonkeyPatch, bound: str, value: float
 ) -> None:
