@@ -10,7 +10,7 @@ from functools import partial
 from flint import arb
 
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import Ball, evaluated, is_zero, size
+from core.multibody.algebra.polynomials import Ball, evaluated, is_zero
 from core.multibody.contacts.contact_states import State, phase_table
 from core.multibody.contacts.projection import project
 from core.multibody.equations.expansion import Series
@@ -95,7 +95,7 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
         *lengths(base.measures.limits),
     ]
     found = _crossings(base, phase, watched, left, noticed)
-    gone = next((watch.one.name for watch in watched if watch.what == "length" and _is_gone(watch, found)), None)
+    gone = next((watch.one.name for watch in watched if watch.what == "length" and _is_gone(phase, watch, found)), None)
     if gone is not None:
         time = found[0].time
         apart = SAFETY_FACTOR * abs(float(time - found[-1].time))
@@ -103,12 +103,15 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
     return found
 
 
-def _is_gone(watch: Watch, found: Sequence[Crossing]) -> bool:
+def _is_gone(phase: Phase, watch: Watch, found: Sequence[Crossing]) -> bool:
     """Return whether a length is zero at the end of a phase, as far as is known: whatever else happens there."""
     if not found:
         return False
     one, other = (evaluated(watch.one.gap, crossing.q) for crossing in (found[0], found[-1]))
-    known = SAFETY_FACTOR * abs(one - other) + FLOOR * size(watch.one.gap, found[0].q)
+    # A length that is a coordinate has no other terms beside which it is nothing.
+    units = phase.tables[0].table.units
+    lengths_now = (x for q in (phase.tracks[0].q, found[0].q) for x, unit in zip(q, units, strict=True) if unit == "m")
+    known = SAFETY_FACTOR * abs(one - other) + FLOOR * max(map(float, map(abs, lengths_now)))
     return found[0].watch is watch or is_zero(one) or bool(abs(one) <= known)
 
 

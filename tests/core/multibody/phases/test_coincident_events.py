@@ -387,3 +387,24 @@ def test_a_welded_pair_lands_once_in_space(spin: tuple[int, int, int], turned_ro
     along = turn.T @ np.cross(turn @ -apart / 2, [0, 0, 1])
     impulse = speed / (1 + along @ np.linalg.solve(moments, along))
     assert landing.impulses["normal"] == pytest.approx(impulse, rel=1e-11)
+
+
+@pytest.mark.parametrize("friction", [None, 0.2])
+@pytest.mark.parametrize("gravity", [10, 9.81])
+@pytest.mark.parametrize("across", [0, 1000])
+def test_a_string_ends_at_its_peg_as_the_other_weight_reaches_the_floor(
+    friction: float | None, gravity: float, across: int
+) -> None:
+    """Atwood's machine of 2 kg and 0.5 kg gains 3 g/5: both are 1 m away at sqrt(10/(3 g))."""
+    scene = {
+        "gravity": [0, -gravity],
+        "bodies": {"a": {"mass": 2, "at": [across, 1]}, "b": {"mass": 0.5, "at": [across + 1, 1]}},
+        "connections": [
+            {"kind": "string", "name": "s", "through": ["a", [across, 2], [across + 1, 2], "b"]},
+            {"kind": "contact", "name": "f", "place": "a", "on": {"at": [0, 0]}, "friction": friction},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.7], ["trajectory"])
+    assert answer.problem is None
+    assert [(event.kind, event.name) for event in answer.events] == [("singular", "s")]
+    assert answer.events[0].time == pytest.approx(math.sqrt(10 / (3 * gravity)), rel=1e-13)
