@@ -8,13 +8,14 @@ D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear paramet
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import hypot
 
 import numpy as np
 
 from core.arrays import Floats
 from core.errors import InvalidParameter, Path
 from core.multibody.assembly.four_bar import FourBar
-from core.multibody.assembly.quadratics import STEPS, Quadratics
+from core.multibody.assembly.quadratics import LEAST_SCALE, STEPS, Quadratics
 from core.multibody.table.frames import Frame
 
 WEIGHTS = (10.0, 100.0, 1000.0)
@@ -60,10 +61,11 @@ def refusal(
         near = _least_squares(measures.weighted(np.where(opened, 1.0, held)), near, across)
     left = _lengths(measures, names, near, frames)[worst]
     what = f'hold together with the others: no places satisfy them all; where they do, "{worst}" stays open'
+    far = f" by about {left:.3g} m" if 0.0 < left < np.inf else ""
     told = "" if linkage is None else f" ({linkage.told()})"
     return InvalidParameter(
         paths.get(worst, ("connections",)),
-        f"{what} by about {left:.3g} m{told}",
+        f"{what}{far}{told}",
         remedy="change a length, a place of the ground, or which bodies may be moved",
     )
 
@@ -71,14 +73,14 @@ def refusal(
 def _lengths(measures: Quadratics, names: Sequence[str], q: Floats, frames: Mapping[str, Frame]) -> dict[str, float]:
     """Return by how much connections are missed (m), to first order in a displacement of one of their bodies."""
     values, lines = measures.values(q), measures.jacobian(q)
-    squares: dict[str, float] = {}
+    found: dict[str, float] = {}
     for k, name in enumerate(names):
         if name in frames:
             continue
         reach = max(float(np.linalg.norm(lines[k, frame.position])) for frame in frames.values())
         length = values[k] / reach if reach > 0.0 else 0.0
-        squares[name] = squares.get(name, 0.0) + length**2
-    return {name: square**0.5 for name, square in squares.items()} or {names[0]: float(np.abs(values).max())}
+        found[name] = hypot(found.get(name, 0.0), length)
+    return found or {names[0]: float(np.abs(values).max())}
 
 
 def _least_squares(measures: Quadratics, q: Floats, across: Floats) -> Floats:
@@ -88,7 +90,7 @@ def _least_squares(measures: Quadratics, q: Floats, across: Floats) -> Floats:
         lines = measures.jacobian(q) @ across
         normal, slope = lines.T @ lines, lines.T @ values
         scale = float(np.trace(normal)) / len(normal)
-        if not scale > 0.0 or damping > 1e12:
+        if not LEAST_SCALE < scale < np.inf or damping > 1e12:
             break
         step = across @ np.linalg.solve(normal + damping * scale * np.eye(len(normal)), -slope)
         further = measures.values(q + step)

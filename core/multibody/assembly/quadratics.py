@@ -25,6 +25,9 @@ DECREASE = 1e-4
 SHORTEST = 2.0**-20
 """Shortest share of a step that is tried."""
 
+LEAST_SCALE = 2.0**-970
+"""Sum of squares of derivatives up to which a rounding of it is no normal double: steps have no digits then."""
+
 
 @dataclass(frozen=True)
 class Quadratics:
@@ -119,7 +122,7 @@ def vanishing(measures: Quadratics, q: Floats, across: Floats) -> Floats:
         lines = measures.jacobian(q) @ across
         gram = lines @ lines.T
         scale = float(np.trace(gram))
-        if not scale > 0.0:
+        if not LEAST_SCALE < scale < np.inf:
             break
         gram[np.diag_indices_from(gram)] += DAMPING * scale + min(norm, 1.0) ** 2 * scale / len(values)
         change = -across @ (lines.T @ np.linalg.solve(gram, values))

@@ -6,8 +6,10 @@ double.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from math import isfinite
 
+from core.errors import NotApplicable
 from core.formulas import Node
 from core.multibody.algebra.polynomials import ONE, Ball, Poly, is_zero
 from core.multibody.formulation.trigonometric_sums import Sum, Term, Variable, Wave
@@ -44,8 +46,18 @@ def number(value: Ball) -> Node:
 
 
 def digits_of(value: float) -> str:
-    """Return the digits that say a double, and no others."""
+    """Return the digits that say a double, and no others; it raises as `require_doubles` does."""
+    require_doubles([value])
     return repr(value).removesuffix(".0")
+
+
+def require_doubles(numbers: Iterable[float]) -> None:
+    """Raise `NotApplicable` where a number of an equation is none that a reader could compute with."""
+    if not all(map(isfinite, numbers)):
+        raise NotApplicable(
+            "numbers of the equations leave the range of doubles",
+            remedy="leave the equations out, or choose units in which the numbers are moderate",
+        )
 
 
 def node_of_sum(total: Sum) -> Node:

@@ -18,7 +18,7 @@ from core.multibody.formulation.conserved import ENERGY, Conserved, conserved_of
 from core.multibody.formulation.constants import Constants
 from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
-from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
+from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms, require_doubles
 from core.multibody.formulation.lagrange import lagrange_equations, measures_of
 from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
 from core.multibody.formulation.linear_equations import linear_equations
@@ -69,6 +69,8 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
     ------
     BudgetExceeded
         For a scene with more coordinates than can be read.
+    NotApplicable
+        Where numbers of the equations leave the range of doubles.
     """
     moving = [(piece, motion) for piece, motion in found.moving if not _rests(motion)]
     count = sum(len(piece.table.names) for piece, _ in moving)
@@ -120,7 +122,12 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
     )
     # All constants are known when everything is written.
     given = {name: in_doubles(value) for name, value in written.numbers.items()}
-    return replace(shown, constants=constants.values(given))
+    shown = replace(shown, constants=constants.values(given))
+    for one in shown.linear:
+        matrices = (*one.mass, *one.damping, *one.stiffness)
+        require_doubles([*one.about.values(), *one.load, *(entry for row in matrices for entry in row)])
+    require_doubles([*shown.constants.values(), *(one.value for one in shown.conserved)])
+    return shown
 
 
 def _with_one_energy(

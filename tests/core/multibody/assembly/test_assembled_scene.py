@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -243,3 +244,13 @@ def test_places_that_disagree_are_refused_without_a_word_of_a_sketch_that_nobody
     with pytest.raises(InvalidParameter) as refused:
         solve_scene(read({"gravity": [0, -9.81], "bodies": {"bob": BOB}, "connections": [held]}))
     assert "assemble" not in f"{refused.value.rule} {refused.value.remedy}"
+
+
+@pytest.mark.parametrize("radius", [1e150, 1e155, 1e160, 1e299])
+def test_a_shape_whose_squares_are_no_doubles_does_not_fit_and_that_is_said(radius: float) -> None:
+    wheel = {"mass": 2, "radius": radius, "inertia": 0.01, "at": [0.03, 0.09]}
+    rolling = {"kind": "rolling", "place": "wheel", "on": {"at": [0, 0], "slope": {"degrees": -20}}}
+    with pytest.raises(InvalidParameter) as refused:
+        solve_scene(sketch({"wheel": wheel}, [rolling], None))
+    assert refused.value.remedy is not None
+    assert not re.search(r"\b(nan|inf|0) m\b", refused.value.remedy)

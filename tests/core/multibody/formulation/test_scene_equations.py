@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from core.errors import BudgetExceeded
+from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.answer import SceneSolution
 from core.multibody.formulation.scene_equations import MOST_COORDINATES
 from core.multibody.language.numerals import Numerals
@@ -268,3 +268,18 @@ def test_pieces_of_formulas_are_written_as_they_are_at_the_start() -> None:
     assert answer.equations is not None
     assert all(len(f"{value:.17g}") <= 18 for value in answer.equations.constants.values())
     assert {column: printed for column, printed, _ in agreed(scene, answer)}["p.x"] == pytest.approx(0.8, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("mass", "gravity", "height"), [(1e155, 1e155, 1.0), (1e300, 1e300, 1.0), (1e200, 10.0, 1e150)]
+)
+def test_equations_with_numbers_beyond_doubles_are_refused(mass: float, gravity: float, height: float) -> None:
+    """The weight is no double, or the energy that is conserved is none; without equations the scene is answered."""
+    question = {
+        "gravity": [0, -gravity],
+        "bodies": {"a": {"mass": mass, "at": [0.6 * height, -0.8 * height]}},
+        "connections": [{"kind": "rod", "a": "a", "b": [0, 0]}],
+    }
+    assert solve_scene(scene_of(question), [], ["energy"]).energy is not None
+    with pytest.raises(NotApplicable, match="range of doubles"):
+        solve_scene(scene_of(question), [], ["equations"])
