@@ -79,7 +79,8 @@ class Description:
     @property
     def moderate(self) -> bool:
         """Whether its numbers are of sizes for which rates are formed to all digits."""
-        numbers = [abs(x) for body in self.bodies.values() for x in (body.mass, *body.start.position.tolist()) if x]
+        # A coordinate may be as small beside others as a zero is.
+        numbers = [x for x in (*(body.mass for body in self.bodies.values()), self.places) if x]
         numbers.extend(connection.reach for connection in self.connections if connection.reach)
         numbers.extend(connection.mass for connection in self.connections if connection.mass)
         numbers.extend(abs(x) for x in self.gravity if x)

@@ -22,7 +22,9 @@ from core.multibody.table.table import Table
 def openings(
     base: Table, found: Decided, touching: Sequence[int], q: Sequence[Ball], v: Sequence[Ball]
 ) -> dict[int, int]:
-    """Return the powers by the numbers of the measures; what stays at zero as far as it is looked at is left out.
+    """Return the powers by the numbers of the measures, zero for what is open.
+
+    What stays at zero as far as it is looked at is left out.
 
     Parameters
     ----------
@@ -33,8 +35,9 @@ def openings(
     q, v : sequence of ball
         The state at the start, as wide as it is not known.
     """
+    away = {i: 0 for i, one in enumerate(found.unilateral) if i not in touching and evaluated(one.gap, q) > 0}
     open_ = [i for i in touching if found.states[i] is State.OPEN and is_zero(evaluated(found.unilateral[i].gap, q))]
-    powers = {i: 1 for i in open_}
+    powers = {**away, **{i: 1 for i in open_}}
     slow = [i for i in open_ if is_zero(gap_rate(found.unilateral[i], q, v))]
     if not slow:
         return powers

@@ -55,7 +55,7 @@ class Phase:
     arguments : sequence of Argument
         What is zero where formulas change their piece.
     openings : mapping of int to int
-        Powers of time with which measures open that touch at the start.
+        Powers of time with which measures open; zero for those that are open at the start.
     """
 
     tracks: list[Track]

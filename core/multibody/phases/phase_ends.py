@@ -26,7 +26,7 @@ from core.multibody.phases.watches import Crossing, Watch, lengths, switches, wa
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.followed import Found
-from core.multibody.search.location import NotLocated, located
+from core.multibody.search.location import NotLocated, located, state_at
 from core.multibody.search.pieces import Expanded, ExpandedWhole, repeats_after
 from core.multibody.table.description import Described
 from core.multibody.table.table import Row
@@ -212,7 +212,25 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
             path=("times",),
             remedy=f"ask for earlier times than {since:.6g} s only",
         ) from None
-    return [] if crossings[0].time > left else crossings
+    if crossings[0].time > left:
+        return []
+    return crossings if one.unsure == 0.0 else _unsure(phase, expansions.places, crossings[0], one.unsure, left)
+
+
+def _unsure(phase: Phase, motions: Sequence[Expanded], first: Crossing, unsure: float, left: float) -> list[Crossing]:
+    """Return a crossing just after the start on both tracks, the second as much later as its time is unsure.
+
+    Rates are as unsure then. What rounding puts before the start is after it.
+    """
+
+    def at(time: Ball, track: int) -> Crossing:
+        if phase.uniform:
+            return Crossing(time, first.watch, *phase.exact_motions[track].state(time))
+        return Crossing(arb(float(time)), first.watch, *state_at(motions[track], float(time), left))
+
+    apart = arb(unsure / SAFETY_FACTOR)
+    first = first if first.time > 0 else at(apart, 0)
+    return [first, at(first.time + apart, -1)]
 
 
 def _located(phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Found, left: float) -> list[Crossing]:

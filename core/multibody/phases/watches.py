@@ -39,8 +39,8 @@ class Watch:
         What has to be positive, for "push" and "grip".
     argument : Law or None
         Of a switch.
-    power : int
-        Of time with which a gap opens at the start of the phase; zero where it is open.
+    power : int or None
+        Of time with which a gap opens at the start of the phase, where that is known; zero where it is open.
     """
 
     number: int
@@ -49,7 +49,7 @@ class Watch:
     sense: int = 1
     admissible: AdmissibleForce | None = None
     argument: Law | None = None
-    power: int = 0
+    power: int | None = None
 
     def series(self, motion: Expansion) -> Series | None:
         """Return it along a motion with constant accelerations; None of a formula that is no polynomial."""
@@ -102,11 +102,11 @@ def watches(
     Parameters
     ----------
     openings : mapping of int to int
-        Powers of time with which gaps open that are zero at the start.
+        Powers of time with which gaps open; zero for those that are open.
     """
     closed = [i for i in range(len(unilateral)) if phase.normal[i] is not None]
     gaps = [i for i in range(len(unilateral)) if i not in closed]
-    found = [Watch(i, "gap", unilateral[i], power=openings.get(i, 0)) for i in gaps]
+    found = [Watch(i, "gap", unilateral[i], power=openings.get(i)) for i in gaps]
     for force in admissible(unilateral, closed, states, phase) if of_forces else ():
         what: Literal["push", "grip"] = "grip" if force.grips else "push"
         found.append(Watch(force.number, what, unilateral[force.number], admissible=force))

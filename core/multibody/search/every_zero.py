@@ -38,7 +38,7 @@ class EveryZero:
         way: float = 1.0,
     ) -> None:
         count = len(quantities)
-        self._motion = Followed(motions, quantities, [True] * count, [0] * count, way, coarse, every=True)
+        self._motion = Followed(motions, quantities, [True] * count, [None] * count, way, coarse, every=True)
         self._signs = [0] * count
         self._last: list[Found | None] = [None] * count
         self.starts: list[float] = []

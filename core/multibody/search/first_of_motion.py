@@ -35,15 +35,15 @@ class Watched:
         Whether it matters that it only touches zero.
     singular : bool
         Whether its zero is a singular place of the table as described.
-    power : int
-        Of time with which it begins, where it is zero at the start.
+    power : int or None
+        Of time with which it begins, where that is known: zero where it is above zero at the start.
     """
 
     along: Quantity
     of_forces: bool = False
     jumps: bool = False
     singular: bool = False
-    power: int = 0
+    power: int | None = None
 
 
 @dataclass(frozen=True)

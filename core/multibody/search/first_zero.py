@@ -29,7 +29,7 @@ class FirstZero:
     jumps : sequence of bool
         Of which quantities it matters whether they only touch zero: what follows is another motion then, and not the
         same to within its error.
-    powers : sequence of int
+    powers : sequence of int or None
         Of time with which each begins: see `Followed`.
     way : float
         -1 for the time before zero.
@@ -42,7 +42,7 @@ class FirstZero:
         motions: Sequence[Expanded],
         quantities: Sequence[Quantity],
         jumps: Sequence[bool],
-        powers: Sequence[int],
+        powers: Sequence[int | None],
         way: float = 1.0,
         coarse: Sequence[Expanded] = (),
     ) -> None:
@@ -115,8 +115,10 @@ class FirstZero:
                 if watch.above:
                     middle, width = 0.5 * (since + here), 0.5 * (here - since)
                     if sign in (NEGATIVE, RISING):
-                        # From below zero Newton's method comes to the last zero, not to that at the start.
-                        return Found(watch.index, self._motion.way * here, 0.0)
+                        # From below zero Newton's method comes to the last zero, not to that at the start. What
+                        # is above zero there by less than is known reaches it somewhere in between.
+                        unsure = here if since == 0.0 and watch.power == 0 else 0.0
+                        return Found(watch.index, self._motion.way * here, 0.0, unsure=unsure)
                     if watch.jumps and since > 0.0:
                         return Found(watch.index, self._motion.way * middle, 0.0, max(width, 2.0**-52 * middle))
             if watch.above and sign == FALLING:

@@ -42,12 +42,15 @@ class Found:
     width : float
         Half the length of the interval in which it is not known on which side of zero it is; zero where it is certain
         to fall below.
+    unsure : float
+        By how much the time may be wrong of what falls below for certain, beyond the error of the motion.
     """
 
     index: int
     time: float
     rest: float
     width: float = 0.0
+    unsure: float = 0.0
 
 
 @dataclass
@@ -73,8 +76,9 @@ class WatchedSign:
 
     Attributes
     ----------
-    power : int
-        Of time with which it rises from zero at the start: lower ones are zero.
+    power : int or None
+        Of time with which it rises at the start, where that is known: lower ones are zero. With the power zero it is
+        above zero there, by however little.
     above : bool
         Whether it has been above zero.
     since : float or None
@@ -85,7 +89,7 @@ class WatchedSign:
 
     quantity: Quantity
     jumps: bool
-    power: int
+    power: int | None
     index: int
     above: bool = True
     since: float | None = None
@@ -103,8 +107,9 @@ class Followed:
     jumps : sequence of bool
         Of which quantities it matters whether they only touch zero: what follows is another motion then, and not the
         same to within its error.
-    powers : sequence of int
-        Of time with which each begins: as many of its coefficients are zero at the start, whatever is computed of them.
+    powers : sequence of int or None
+        Of time with which each begins, where that is known: as many of its coefficients are zero at the start, whatever
+        is computed of them, and it rises from there.
     way : float
         -1 for the time before zero.
     coarse : sequence of Expanded
@@ -123,7 +128,7 @@ class Followed:
         motions: Sequence[Expanded],
         quantities: Sequence[Quantity],
         jumps: Sequence[bool],
-        powers: Sequence[int],
+        powers: Sequence[int | None],
         way: float = 1.0,
         coarse: Sequence[Expanded] = (),
         *,
@@ -273,10 +278,13 @@ class Followed:
         power of the first coefficient that is left out follows; it is zero for what vanishes throughout.
         """
         assert len(values) == 1
-        begun = np.arange(values.shape[1]) >= watch.power
+        begun = np.arange(values.shape[1]) >= (watch.power or 0)
         known = begun & (np.abs(values[0, :, 0]) > rounded[0])
         if not known.any():
             return values, band, 0
+        if watch.power == 0:
+            # What is above zero by less than can be told may fall below at once: that is its event.
+            return values, band, values.shape[1]
         zeros, count = int(np.argmax(known)), values.shape[1]
         shifted, errors = np.zeros_like(values), np.zeros_like(band)
         shifted[:, : count - zeros], errors[:, : count - zeros] = values[:, zeros:], band[:, zeros:]

@@ -74,6 +74,12 @@ def located(motion: Expanded, quantity: Callable[[Pieces], Curve], time: float, 
     raise NotLocated
 
 
+def state_at(motion: Expanded, time: float, reach: float) -> tuple[list[Ball], list[Ball]]:
+    """Return coordinates and rates at a double."""
+    found = _state(motion(np.array([time]), np.array([reach])), time, 0.0, 0.0, 0.0)
+    return found.q, found.v
+
+
 def _newton(curve: Floats, share: float) -> tuple[float, float]:
     th, tl = share, 0.0
     size = float(np.max(np.abs(curve[:, 0])))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -177,3 +178,20 @@ def test_forces_at_the_start_that_do_not_follow_from_others_are_refused() -> Non
     failure = replace(one, answer=replace(one.answer, forces=forces)).failure()
     assert failure is not None
     assert failure.law == "s.1.tension at the start by the others"
+
+
+@pytest.mark.parametrize("height", ["1e-300", "1e-100", "1e-30", 0])
+def test_what_falls_through_a_floor_is_seen_however_low_it_begins(height: Any) -> None:
+    def above(floor: float) -> dict[str, Any]:
+        return {
+            "gravity": [0, -9.81],
+            "bodies": {"p": {"mass": 1, "at": [1, height]}},
+            "connections": [
+                {"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, floor]}},
+                {"kind": "force", "place": "p", "force": ["-0.1*vx*speed", "-0.1*vy*speed"]},
+            ],
+        }
+
+    right, wrong = answered(above(0)), answered(above(-100))
+    assert right.failure() is None
+    assert Audited(right.scene, wrong.answer, wrong.sampler, right.times).failure() is not None

@@ -289,3 +289,91 @@ def test_masses_on_a_string_above_a_floor_come_down_again_and_again(heavy: str, 
     landed = [event.time for event in answer.events if event.kind == "touch"][:10]
     assert landed == pytest.approx(expected, rel=1e-12)
     assert column(answer, "b.position").values[-1, -1] == pytest.approx(0.0, abs=1e-9)
+
+
+HARDLY = ["1e-300", "1e-100", "1e-50", "1e-40", "1e-30", "1e-29"]
+"""Heights (m) above a floor that pairs of doubles do not tell from zero beside 1 m, or only just."""
+
+
+def dragged(*bodies: str, at: list[list[Any]], restitution: float = 0, friction: float = 0) -> dict[str, Any]:
+    """Return points above a floor that the air slows down: their motion is no polynomial."""
+    floor = {"restitution": restitution} | ({"friction": friction} if friction else {})
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {name: {"mass": 1, "at": place, "velocity": [0, 0]} for name, place in zip(bodies, at, strict=True)},
+        "connections": [
+            one
+            for name in bodies
+            for one in (
+                {"kind": "contact", "name": f"floor-{name}", "place": name, "on": {"at": [0, 0]}, **floor},
+                {"kind": "force", "place": name, "force": ["-0.1*vx*speed", "-0.1*vy*speed"]},
+            )
+        ],
+    }
+
+
+@pytest.mark.parametrize("height", HARDLY)
+@pytest.mark.parametrize("restitution", [0, 0.5, 1])
+@pytest.mark.parametrize("friction", [0, 0.25])
+@pytest.mark.parametrize("x", [1, 1000])
+def test_what_hardly_hangs_above_a_floor_touches_it_at_once(
+    height: str, restitution: float, friction: float, x: float
+) -> None:
+    """Drag is nothing in so short a fall."""
+    scene = dragged("p", at=[[x, height]], restitution=restitution, friction=friction)
+    answer = solve_scene(read(scene), [0.5, 1.0])
+    assert kinds(answer)[0] == ("touch", "floor-p")
+    assert abs(answer.events[0].time - sqrt(2 * mpf(height) / mpf("9.81"))) <= answer.events[0].error < 1e-12
+    assert column(answer, "p.position").values[:, 1] == pytest.approx(0.0, abs=1e-25)
+
+
+@pytest.mark.parametrize("height", HARDLY)
+def test_what_is_thrown_down_from_there_bounces_as_from_the_floor(height: str) -> None:
+    answers = []
+    for at in (height, 0):
+        scene = dragged("p", at=[[1, at]], restitution=0.5)
+        scene["bodies"]["p"]["velocity"] = [1, -1]
+        answers.append(solve_scene(read(scene), [0.05, 0.15]))
+    above, on = answers
+    assert abs(above.events[0].time - mpf(height)) <= above.events[0].error < 1e-27
+    for one, other in zip(above.events[:4], on.events[:4], strict=True):
+        assert one.impulses["normal"] == pytest.approx(other.impulses["normal"], rel=1e-14)
+    assert column(above, "p.position").values == pytest.approx(column(on, "p.position").values, rel=1e-14)
+
+
+@pytest.mark.parametrize("height", HARDLY)
+def test_what_is_thrown_up_from_there_falls_back_once(height: str) -> None:
+    scene = dragged("p", at=[[1, height]])
+    scene["bodies"]["p"]["velocity"] = [0, 1]
+    answer = solve_scene(read(scene), [1.0])
+    assert kinds(answer) == [("touch", "floor-p")]
+    # With quadratic drag: up in atan(k v)/(k g), down in arcosh(exp(k^2 g h))/(k g), k^2 = 0.1/9.81.
+    k, g = sqrt(mpf("0.1") / mpf("9.81")), mpf("9.81")
+    high = mp.log(1 + k**2) / (2 * k**2 * g)
+    when = (mp.atan(k) + mp.acosh(mp.exp(k**2 * g * high))) / (k * g)
+    assert answer.events[0].time == pytest.approx(float(when), rel=1e-14)
+
+
+@pytest.mark.parametrize("heights", [["1e-100", "1e-100"], ["1e-100", 0], [0, "1e-30"], ["1e-40", "1e-30"]])
+def test_each_of_two_does_so(heights: list[Any]) -> None:
+    scene = dragged("p", "q", at=[[1, heights[0]], [2, heights[1]]])
+    scene["connections"].append({"kind": "spring", "a": "p", "b": "q", "stiffness": 4, "rest_length": 0.5})
+    answer = solve_scene(read(scene), [1.0])
+    assert sorted(kinds(answer)) == [("touch", f"floor-{n}") for n, at in zip("pq", heights, strict=True) if at]
+    for name in "pq":
+        assert column(answer, f"{name}.position").values[0, 1] == pytest.approx(0.0, abs=1e-25)
+
+
+@pytest.mark.parametrize("height", HARDLY)
+def test_a_rod_that_swings_down_onto_a_floor_at_once_rests(height: str) -> None:
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"p": {"mass": 1, "at": [1, height]}},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, 0]}},
+            {"kind": "rod", "a": "p", "b": [0, 0]},
+        ],
+    }
+    answer = solve_scene(read(scene), [1.0])
+    assert kinds(answer) == [("touch", "floor")]
+    assert column(answer, "p.position").values[0] == pytest.approx([1.0, 0.0], abs=1e-25)

@@ -143,6 +143,17 @@ def test_a_search_goes_on_where_it_ended() -> None:
     assert abs(exact(search.until(4.0)) - 2 * mpf(pi) / 3) <= 1e-15
 
 
+@pytest.mark.parametrize("gap", ["1e-300", "1e-100", "1e-40", "1e-30"])
+def test_what_is_known_to_begin_above_zero_falls_below_however_little_above_it_is(gap: str) -> None:
+    # x - 1 + gap is lost in the rounding of x = 1.
+    quantity = level(mp.nstr(mpf(gap) - 1, 50))
+    assert FirstZero([Circle()], [quantity], [True], [None]).until(1.0) is None
+    found = FirstZero([Circle()], [quantity], [True], [0]).until(1.0)
+    assert found is not None
+    when = mp.acos(1 - mpf(gap))
+    assert abs(exact(found) - when) <= found.unsure < 1e-12
+
+
 def test_a_difference_of_two_computations_makes_a_touch_undecided() -> None:
     both = [Circle(), Circle(wrong=1e-9)]
     assert FirstZero(both[:1], [level("1.00000000000001", 1.0, 0.0)], [True], [0]).until(10.0) is None
