@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from flint import arb_mat
+from flint import arb, arb_mat
 
 from core.errors import InvalidParameter, Path
 from core.formulas import Node
@@ -62,11 +62,26 @@ class Tabulated:
             return Node("if", inner=(self._beyond(argument, middle), *sides))
         found = _number(self.pieces[first][-1])
         for factor in self.pieces[first][-2::-1]:
-            found = Node("+", inner=(_number(factor), Node("*", inner=(self._beyond(argument, first), found))))
+            found = _sum(_number(factor), _product(self._beyond(argument, first), found))
         return found
 
     def _beyond(self, argument: Node, place: int) -> Node:
-        return Node("-", inner=(argument, _number(self.places[place])))
+        start = _number(self.places[place])
+        return argument if _equals(start, ZERO) else Node("-", inner=(argument, start))
+
+
+def _equals(node: Node, value: Ball) -> bool:
+    return node.kind == "number" and bool(arb(node.text) == value)
+
+
+def _sum(a: Node, b: Node) -> Node:
+    """Return a sum as it would be written: without a zero."""
+    return b if _equals(a, ZERO) else a if _equals(b, ZERO) else Node("+", inner=(a, b))
+
+
+def _product(a: Node, b: Node) -> Node:
+    """Return a product as it would be written: without a one, and zero by itself."""
+    return b if _equals(b, ZERO) else a if _equals(b, ONE) else Node("*", inner=(a, b))
 
 
 def _nowhere(argument: Node) -> Node:

@@ -38,6 +38,21 @@ def test_between_points(place: float) -> None:
     assert cubic == pytest.approx(CubicSpline(x, y, bc_type="natural")(place), abs=1e-14)
 
 
+def written(node: Node) -> str:
+    if node.kind == "number":
+        return f"{float(node.text):g}"
+    parts = [written(inner) for inner in node.inner]
+    return node.text or (f"({node.kind.join(parts)})" if node.kind in "+-*" else f"{node.kind}({', '.join(parts)})")
+
+
+def test_pieces_are_written_without_zeros_and_ones() -> None:
+    table = {"points": [[0, 3], [1, 4], [2, 4], [3, 0]], "outside": "constant"}
+    with precision(200):
+        function = tabulated(table, Numerals.of({}, "decimals").number, HERE)
+        formula = written(function.of(Node("name", "t")))
+    assert formula == "if((t-3), 0, if(t, if((t-1), if((t-2), (4+((t-2)*-4)), 4), (3+t)), 3))"
+
+
 def test_outside_of_the_points() -> None:
     constant = {"points": POINTS, "outside": "constant"}
     assert (at(constant, -7.0), at(constant, 7.0)) == (0.5, -4.0)
