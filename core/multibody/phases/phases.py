@@ -35,7 +35,7 @@ from core.multibody.phases.passing_touch import without_passing_touch
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
-from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness
+from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness, unknown_share
 from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import Tracks
 from core.multibody.phases.turning_slip import begins_at_once, turns
@@ -159,7 +159,7 @@ class _Run:
     def _collide(self) -> bool:
         """Resolve what approaches; return whether that is decided."""
         table, tracks = self.base.measures.table, self.tracks
-        for _ in range(_STILL):
+        for tried in range(_STILL):
             problem = self._face()
             if problem is not None:
                 self._stop(problem)
@@ -167,6 +167,8 @@ class _Run:
             q, v = tracks.wide()
             hit = approaching(self.unilateral, self.touching, q, v)
             if not hit:
+                if not tried:
+                    self._come_to_rest()
                 return True
             unilateral, settling = self.unilateral, list[int]()
             for limit in (SLOW, NEAR):
@@ -194,14 +196,30 @@ class _Run:
             self._record(hit, outcome.widened(alike))
             rates = [found.v for found in alike or [outcome]]
             tracks.each = [replace(track, v=v) for track, v in zip(tracks.each, rates, strict=True)]
-            for i in settling:
-                settled = self.unilateral[i]
-                # The end of bounces that are not listed is an event already.
-                listed = settled.name == self.motion.phases[-1].settles
-                if self.states[i] is State.OPEN and settled.restitution > 0 and not listed:
-                    self._event("settle", settled.name)
+            self._settled(settling)
         self._stop(Problem("no-progress", "impacts follow one another without end", ()))
         return False
+
+    def _come_to_rest(self) -> None:
+        """Let rough contacts rest of which it is not known whether they strike: an impact would have stopped a slip.
+
+        The state is wide enough then for whatever slip the last of their bounces may have left. Without friction
+        nothing but the unknown rate itself is left open, which the contact holds.
+        """
+        rough = [i for i in self.touching if self.unilateral[i].slips and self.states[i] is State.OPEN]
+        beyond = [] if self.tracks.exact else rough
+        share = unknown_share(self.unilateral, beyond, self.motion.events, self.tracks)
+        if share > 0.0:
+            self._settled(self._settling(share, share)[1])
+
+    def _settled(self, settling: Sequence[int]) -> None:
+        """Add the events of bounces that have come to rest."""
+        for i in settling:
+            settled = self.unilateral[i]
+            # The end of bounces that are not listed is an event already.
+            listed = settled.name == self.motion.phases[-1].settles
+            if self.states[i] is State.OPEN and settled.restitution > 0 and not listed:
+                self._event("settle", settled.name)
 
     def _face(self) -> Problem | None:
         """Choose what the corners of shapes may meet from the present state on; what leaves an edge touches no more."""

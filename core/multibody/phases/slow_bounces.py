@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 
+from core.multibody.algebra.polynomials import is_zero
 from core.multibody.contacts.contact_responses import gap_rate
 from core.multibody.phases.recurring_bounces import LISTED
 from core.multibody.phases.tracks import Tracks
@@ -34,18 +35,45 @@ def slowness(
     limit : float
         Share of the largest rate below which bounces are slow.
     """
-    names = Counter(event.name for event in events[-2 * LISTED :])
-    if len(events) < LISTED or any(names[unilateral[i].name] < OFTEN for i in hit):
+    if not _bounce_often(unilateral, hit, events):
         return 0.0
     share = max(rate_share(unilateral[i], tracks) for i in hit)
-    if not share < limit:
-        return 0.0
-    # All bounces that would follow, each less than the one before by the restitution, and as much again.
+    return _left(share, unilateral, hit) if share < limit else 0.0
+
+
+def unknown_share(
+    unilateral: Sequence[Unilateral], touching: Sequence[int], events: Sequence[MotionEvent], tracks: Tracks
+) -> float:
+    """Return what is left of bounces whose next rate is not known to be any, as `slowness` does.
+
+    Parameters
+    ----------
+    touching : sequence of int
+        Measures that touch now and did not before, and do not approach as far as is known.
+    """
+    often = [i for i in touching if _bounce_often(unilateral, [i], events)]
+    q, v = tracks.wide()
+    rates = [(gap_rate(unilateral[i], q, v), _fastest(unilateral[i], tracks)) for i in often]
+    share = max((float(x.abs_upper()) / most for x, most in rates if is_zero(x) and most > 0.0), default=0.0)
+    return _left(share, unilateral, often) if share > 0.0 else 0.0
+
+
+def _bounce_often(unilateral: Sequence[Unilateral], hit: Sequence[int], events: Sequence[MotionEvent]) -> bool:
+    names = Counter(event.name for event in events[-2 * LISTED :])
+    return len(events) >= LISTED and all(names[unilateral[i].name] >= OFTEN for i in hit)
+
+
+def _left(share: float, unilateral: Sequence[Unilateral], hit: Sequence[int]) -> float:
+    """Return all bounces that would follow, each less than the one before by the restitution, and as much again."""
     bounciest = max(float(unilateral[i].restitution) for i in hit)
     return 2.0 * share / (1.0 - bounciest) if bounciest < 1.0 else 0.0
 
 
 def rate_share(one: Unilateral, tracks: Tracks) -> float:
     """Return the rate of a gap as a share of the largest rate so far of its unit."""
-    first, fastest = tracks.first, tracks.fastest("rad" if one.unit == "N m" else "m")
+    first, fastest = tracks.first, _fastest(one, tracks)
     return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf
+
+
+def _fastest(one: Unilateral, tracks: Tracks) -> float:
+    return tracks.fastest("rad" if one.unit == "N m" else "m")

@@ -408,3 +408,29 @@ def test_a_string_ends_at_its_peg_as_the_other_weight_reaches_the_floor(
     assert answer.problem is None
     assert [(event.kind, event.name) for event in answer.events] == [("singular", "s")]
     assert answer.events[0].time == pytest.approx(math.sqrt(10 / (3 * gravity)), rel=1e-13)
+
+
+def test_bounces_end_where_it_is_not_known_whether_the_next_one_strikes() -> None:
+    """A block bounces on a rough floor and is drawn aside by a spring that never bears what friction can hold.
+
+    After each impact it has no slip, so that it rests where the bounces end, wherever the scene stands.
+    """
+    x = 300
+    block = {"mass": 2, "at": [f"{x} + 1.7", 0.5]}
+    weight, other = {"mass": 1, "at": [f"{x} + 2.5", 1]}, {"mass": 1, "at": [f"{x} + 2.9", 0.5]}
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"block": block, "weight": weight, "other": other},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "block", "on": {"at": [0, 0]}, "friction": 0.3}
+            | {"restitution": 0.5},
+            {"kind": "string", "through": ["weight", [f"{x} + 2.5", 2], [f"{x} + 2.9", 2], "other"]},
+            {"kind": "spring", "a": "block", "b": "weight", "stiffness": 5},
+        ],
+    }
+    answer = solve_scene(read(scene), [1, 1.5], accuracy=1e-6)
+    assert answer.problem is None
+    assert [event.kind for event in answer.events][-2:] == ["touch", "settle"]
+    place = column(answer, "block.position")
+    assert np.asarray(place.values)[0] == pytest.approx(np.asarray(place.values)[1], abs=place.error)
+    assert np.asarray(place.values)[0] - [x, 0] == pytest.approx([1.73096813790454, 0], abs=place.error + 1e-14)
