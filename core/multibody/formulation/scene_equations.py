@@ -233,7 +233,8 @@ def _places(found: Modelled, written: _Written) -> dict[str, Node]:
     table, answer = found.described.measures.table, dict[str, Node]()
     sums: dict[int, Sum] = {}
     for i, expression in enumerate(found.whole.reduced.expressions):
-        if all(key[0] in written.places for key in expression if key):
+        # A clock is no column, and one that nothing reads is not written.
+        if table.units[i] != "s" and all(key[0] in written.places for key in expression if key):
             sums[i] = _substituted(expression, written.places)
             check_formula("place", table.names[i], sums[i], table.q[i], written.start, written.rates)
             check_formula("velocity", table.names[i], sums[i].rate(), table.v[i], written.start, written.rates)

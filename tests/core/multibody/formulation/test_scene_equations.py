@@ -255,6 +255,19 @@ def test_matrices_have_the_modes_of_the_places_of_rest() -> None:
     assert compared == 5
 
 
+def test_a_clock_that_nothing_reads_at_the_start_is_not_written() -> None:
+    """Before its first point a table has the value there."""
+    scene = {
+        "let": {"push": {"points": [[1, 3], [2, 4]], "outside": "constant"}},
+        "bodies": {"p": {"mass": 2, "at": [0, 0]}},
+        "connections": [{"kind": "force", "place": "p", "force": ["push(t)", 0]}],
+    }
+    found = solve_scene(scene_from(scene), outputs=["equations"]).equations
+    assert found is not None
+    assert list(found.coordinates) == ["p.x"]
+    assert [one.plain for one in found.equations] == ["p.x'' = 1.5"]
+
+
 def test_pieces_of_formulas_are_written_as_they_are_at_the_start() -> None:
     """A table between its first two points, in digits of doubles."""
     push = {"points": [[0, 1], [1, 2], [2, 0]], "interpolation": "cubic"}
