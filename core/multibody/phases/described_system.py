@@ -22,6 +22,7 @@ from core.multibody.phases.phase_states import how_until
 from core.multibody.phases.searches import Searches
 from core.multibody.phases.smooth_motion import not_watched
 from core.multibody.phases.sums import Sums
+from core.multibody.trajectory.along import period_within
 from core.multibody.trajectory.column_errors import FINEST, require_reached, scaled, worst
 from core.multibody.trajectory.columns import NEAREST, Columns
 from core.multibody.trajectory.events import searched_until
@@ -33,6 +34,7 @@ from core.multibody.trajectory.inherited import (
     instants,
     with_inherited,
 )
+from core.multibody.trajectory.integrals import POINTS_OF_INTERVAL, require_few_points
 from core.multibody.trajectory.occurrences import ExtremesOf, ValueSearch
 from core.multibody.trajectory.scene_request import Output, require_affordable
 from core.notices import Notice
@@ -45,6 +47,8 @@ PLACES_AND_FORCES = ("trajectory", "forces-in-time")
 """Outputs that an audit compares."""
 SUMS = ("work-in-time", "paths-in-time")
 """Outputs that are summed up along the motion."""
+_TOLD_APART = 9
+"""Decimal places of shares of a period: times that differ by less may be the same within a period."""
 _ONLY_SUMS = "it is not propagated to integrals along the motion, and nothing else is asked for"
 
 
@@ -200,17 +204,13 @@ class DescribedSystem:
 
         None where no search is among the outputs.
         """
-        searches = [
-            (i, output) for i, output in enumerate(self.outputs) if isinstance(output, (ValueSearch, ExtremesOf))
-        ]
+        searches = self._asked()
         if not searches:
             return None, None
-        motion = self.motion
-        end = searched_until(float(np.max(times)), motion.ended)
         with np.errstate(over="ignore", invalid="ignore"):
-            if not motion.phases:
+            if not self.motion.phases:
                 return (), ()
-            along = Searches(self.columns, end, how_until(motion.phases, end), accuracy)
+            along = self._searches(times, accuracy)
             found: list[Occurrence] = []
             ranges: list[SceneExtremes] = []
             for index, one in searches:
@@ -219,6 +219,50 @@ class DescribedSystem:
                 else:
                     ranges.append(along.extremes(one, index))
             return tuple(found), tuple(self._with_places(ranges))
+
+    def require_answerable(self, times: Floats, accuracy: float) -> None:
+        """Raise what the samples, the sums and the searches are refused for before any of them is computed.
+
+        Raises
+        ------
+        InvalidParameter
+            For a search of what is no quantity of the scene.
+        BudgetExceeded
+            For sums at more times than they may have.
+        """
+        if not self.motion.phases or not len(times):
+            return
+        if searches := self._asked():
+            with np.errstate(over="ignore", invalid="ignore"):
+                along = self._searches(times, accuracy)
+                for index, one in searches:
+                    along.column(one, index)
+        if self.motion.smooth and self._integrates():
+            reached = np.unique([t for t in times.tolist() if self._is_reached(t)])
+            for way in (reached[reached > 0.0], -reached[reached < 0.0]):
+                require_few_points(POINTS_OF_INTERVAL * self._distinct(way))
+
+    def _integrates(self) -> bool:
+        """Return whether something is integrated to every time: a length, or a work that has no potential."""
+        works = any(work.potential is None for work in self.motion.base.measures.works)
+        return "paths-in-time" in self.outputs or (works and "work-in-time" in self.outputs)
+
+    def _distinct(self, times: Floats) -> int:
+        """Return how many times there are at least to integrate to: along what repeats, of those within a period."""
+        counts = [len(times)]
+        for _, motion in self.motion.phases[0].models[0].whole.parts:
+            period = period_within([motion], float(times.max(initial=0.0)))
+            if period is not None:
+                counts.append(len(np.unique(np.round(times / float(period) % 1.0, _TOLD_APART))))
+        return min(counts)
+
+    def _asked(self) -> list[tuple[int, ValueSearch | ExtremesOf]]:
+        """Return the searches among the outputs, with their places there."""
+        return [(i, output) for i, output in enumerate(self.outputs) if isinstance(output, (ValueSearch, ExtremesOf))]
+
+    def _searches(self, times: Floats, accuracy: float) -> Searches:
+        end = searched_until(float(np.max(times)), self.motion.ended)
+        return Searches(self.columns, end, how_until(self.motion.phases, end), accuracy)
 
     def _with_places(self, ranges: Sequence[SceneExtremes]) -> Iterator[SceneExtremes]:
         """Yield extremes with where the bodies are at their times."""

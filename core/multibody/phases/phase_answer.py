@@ -51,6 +51,10 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
     """
     motion = _motion_of(scene, request)
     system = DescribedSystem(scene, motion, request.outputs)
+    # What is refused of these is refused before samples are computed.
+    equations = _equations(scene, motion, request) if "equations" in request.outputs else None
+    if request.method is None:
+        system.require_answerable(request.times, request.accuracy)
     trajectory = request.solved(system)
     occurrences, extremes = (None, None) if trajectory is None else system.searched(request.times, request.accuracy)
     model, accelerations, forces = _start_of(motion, float(request.times.max(initial=0.0)))
@@ -81,7 +85,7 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
             for phase, following in zip_longest(motion.phases, motion.phases[1:])
         ),
         problem=_problem(motion),
-        equations=_equations(scene, motion, request) if "equations" in outputs else None,
+        equations=equations,
     )
     return answer, system
 

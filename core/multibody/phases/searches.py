@@ -134,7 +134,7 @@ class Searches:
 
     def occurrences(self, search: ValueSearch, index: int) -> list[Occurrence]:
         """Return the times after the start at which a quantity takes a value; it raises as `extremes` does."""
-        group, name = self._column(search, index)
+        group, name = self.column(search, index)
         column = self.stretches[0].columns(np.zeros(1), self.how, group)[name]
         Measured(column.unit).check(search.written, ("outputs", index, "when", "equals"), None)
         wanted = MOST_FOUND if search.nth is None else search.nth
@@ -158,7 +158,7 @@ class Searches:
             # A quantity may be known much better at other times than where it is extreme.
             if one.error <= self.accuracy * max(abs(one.least), abs(one.largest)):
                 return one
-            group, name = self._column(search, index)
+            group, name = self.column(search, index)
             reached = self._relative(group, name, one.error)
             if reached <= self.accuracy:
                 return one
@@ -189,14 +189,14 @@ class Searches:
 
     def _parts(self, search: ValueSearch | ExtremesOf, index: int) -> Iterator[_Part]:
         """Yield a quantity on every stretch."""
-        group, name = self._column(search, index)
+        group, name = self.column(search, index)
         while (reached := self._relative(group, name)) > self.accuracy and np.isfinite(reached):
             # What leaves the range of doubles is refused where it is found.
             self._refine(name, reached, index)
         yield from (self._part(stretch, group, search.quantity) for stretch in self.stretches)
 
-    def _column(self, search: ValueSearch | ExtremesOf, index: int) -> tuple[str, str]:
-        """Return the output that has a quantity, and the name of its column."""
+    def column(self, search: ValueSearch | ExtremesOf, index: int) -> tuple[str, str]:
+        """Return the output that has a quantity, and the name of its column; it raises where the scene has not."""
         known: dict[str, Column] = {}
         for group in COLUMNS_OF_STATES:
             columns = self.stretches[0].columns(np.zeros(1), self.how, group)

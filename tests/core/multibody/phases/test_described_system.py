@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.errors import AccuracyUnreachable, BudgetExceeded, NotApplicable
+from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, NotApplicable
+from core.multibody.phases.described_system import DescribedSystem
 from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
+from core.multibody.trajectory.occurrences import ExtremesOf, When
 from core.multibody.trajectory.scene_request import MOST_NUMBERS, require_affordable
 from core.systems.methods import RungeKutta4
 from core.systems.trajectory import Trajectory
@@ -109,3 +111,41 @@ def test_a_trajectory_has_no_more_numbers_than_one_may_have() -> None:
     with pytest.raises(BudgetExceeded):
         require_affordable(most + 1, 100)
     require_affordable(most, 0)
+
+
+PENDULUM = {
+    "gravity": [0, -9.81],
+    "bodies": {"bob": {"mass": 1, "at": [0.6, -0.8]}},
+    "connections": [{"kind": "rod", "a": "bob", "b": [0, 0]}],
+}
+FALLING = {"gravity": [0, -9.81], "bodies": {"stone": {"mass": 1, "at": [0, 0], "velocity": [1, 0]}}}
+
+
+@pytest.mark.parametrize(
+    ("scene", "end", "output", "error"),
+    [
+        (PENDULUM, 1.0, ExtremesOf("bob.sped"), InvalidParameter),
+        (PENDULUM, 1.0, When("bob.sped", 1), InvalidParameter),
+        (PENDULUM, 1.0, "paths-in-time", BudgetExceeded),
+        (PENDULUM, 100.0, "paths-in-time", BudgetExceeded),
+        (FALLING, 1.0, "paths-in-time", BudgetExceeded),
+        (FALLING, -1.0, "paths-in-time", BudgetExceeded),
+    ],
+)
+def test_what_cannot_be_answered_is_refused_before_a_sample_is_computed(
+    monkeypatch: pytest.MonkeyPatch, scene: Any, end: float, output: Any, error: type[Exception]
+) -> None:
+    def computed(*_: Any) -> Any:
+        raise AssertionError
+
+    monkeypatch.setattr(DescribedSystem, "trajectory", computed)
+    with pytest.raises(error):
+        solve_scene(read({"connections": [], **scene}), np.linspace(0.0, end, 20_000), ["trajectory", output])
+
+
+def test_as_many_times_as_can_be_summed_up_to_are_not_refused() -> None:
+    """13 333 intervals of thirty points; along what repeats, times that come again count once."""
+    with pytest.raises(BudgetExceeded):
+        solve_scene(read({"connections": [], **FALLING}), np.linspace(0.0, 1.0, 13_335), ["paths-in-time"])
+    for scene, times in ((FALLING, np.linspace(0.0, 1.0, 13_000)), (FALLING, np.repeat([0.5, 1.0], 10_000))):
+        assert solve_scene(read({"connections": [], **scene}), times, ["paths-in-time"]).trajectory is not None
