@@ -164,7 +164,7 @@ def _event(motions: Sequence[Expanded], end: End, found: Found) -> MotionEvent:
         # The series of a length that is one of the coordinates do not reach beyond its zero.
         return MotionEvent(end.event, end.name, found.time, SINGULAR_TIME_ERROR * abs(found.time))
     time = float(zeros[0].time)
-    error = FLOOR * zeros[0].width + 2.0**-52 * abs(time) + found.unsure
+    error = (found.unsure or FLOOR * zeros[0].width) + 2.0**-52 * abs(time)
     error += SAFETY_FACTOR * abs(float(zeros[0].time - zeros[-1].time))
     if end.watched.singular:
         # Beside a singular place slopes tell nothing; that it lies there is known.

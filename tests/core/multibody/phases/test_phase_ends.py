@@ -328,6 +328,14 @@ def test_what_hardly_hangs_above_a_floor_touches_it_at_once(
 
 
 @pytest.mark.parametrize("height", HARDLY)
+def test_it_came_from_the_floor_as_shortly_before(height: str) -> None:
+    before, after = solve_scene(read(dragged("p", at=[[1, height]])), [-0.1, 1.0]).events
+    short = sqrt(2 * mpf(height) / mpf("9.81"))
+    assert abs(before.time + short) <= before.error < 1e-13
+    assert abs(after.time - short) <= after.error < 1e-13
+
+
+@pytest.mark.parametrize("height", HARDLY)
 def test_what_is_thrown_down_from_there_bounces_as_from_the_floor(height: str) -> None:
     answers = []
     for at in (height, 0):
