@@ -138,7 +138,7 @@ class _Audit:
         """Compare what needs the start or windows of the motion."""
         description, answer, freedoms = self.description, self.answer, Freedoms(self.description)
         check_places(ledger, description, start)
-        check_forces(ledger, description, answer, start)
+        check_forces(ledger, description, answer, start, float(sizes.force[0]))
         if after is not None:
             after.check(ledger, measures, len(samples.times))
             forces = forces_of(answer)

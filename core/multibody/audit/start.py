@@ -9,6 +9,7 @@ import numpy as np
 
 from core.multibody.answer import SceneSolution
 from core.multibody.audit.chosen_times import quickness
+from core.multibody.audit.definition import Definition
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import Ledger
 from core.multibody.audit.laws_at_samples import ANGULAR, MeasureValues
@@ -90,13 +91,15 @@ def forces_of(answer: SceneSolution) -> dict[str, Numbers]:
     return {name: np.array([np.nan if one.value is None else one.value]) for name, one in (answer.forces or {}).items()}
 
 
-def check_forces(ledger: Ledger, description: Description, answer: SceneSolution, start: Samples) -> None:
+def check_forces(ledger: Ledger, description: Description, answer: SceneSolution, start: Samples, scale: float) -> None:
     """Require forces at the start that follow from others of their connections to do so.
 
     Parameters
     ----------
     start : Samples
         One sample of the motion, at the start.
+    scale : float
+        Size of the forces of the scene (N), beside which those that follow from weights are known.
     """
     forces = forces_of(answer)
     for one in description.connections:
@@ -110,8 +113,13 @@ def check_forces(ledger: Ledger, description: Description, answer: SceneSolution
             if name in forces and not np.isnan(value - forces[name]).any():
                 # Of a sum of several parts some may not be determined.
                 size = np.nansum([np.abs(forces[other]) for other in (*one.forces, name)], axis=0)
-                law = f"{name} at the start by the others"
-                ledger.compare(law, one.name, start.times, np.abs(value - forces[name]), KNOWN * size)
+
+                def law(at: Samples, one: Definition = one, name: str = name) -> Numbers:
+                    return one.derived(at.placement, at.motion, forces)[name] - forces[name]
+
+                known, rest = KNOWN / ledger.rounding * size + scale, value - forces[name]
+                said = f"{name} at the start by the others"
+                ledger.hold(said, one.name, start, law, known, value=rest, bodies=one.bodies)
 
 
 class AfterStart:
