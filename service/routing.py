@@ -264,5 +264,10 @@ class GetRoute(Documented):
     fixed: bool = False
     method: str = "GET"
 
+    @property
+    def takes_parameters(self) -> bool:
+        """Whether parameters that are not known are ignored: probes and links to pages have some, the API has none."""
+        return not self.path.startswith("/v1/")
+
 
 Route = PostRoute | GetRoute | ResourceRoute

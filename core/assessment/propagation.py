@@ -31,7 +31,7 @@ WITHIN_ROUNDING = 2.0**-34
 """The same for described scenes: so little that what touches or fits together still does (1e-9)."""
 
 SETTINGS = {"times", "accuracy", "method", "measure", "input_uncertainty", "outputs", "round", "resolution", "points"}
-SETTINGS |= {"seed", "count"}
+SETTINGS |= {"seed", "count", "turns"}
 """Fields of questions that are no data."""
 
 Shares = tuple[tuple[Path, float], ...]

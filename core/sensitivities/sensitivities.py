@@ -180,8 +180,10 @@ def quotient(unit: str, by: str) -> str:
 def sensitivities(inputs: Inputs, of: Sequence[Figure], to: Sequence[Path]) -> list[Sensitivity]:
     """Return the derivatives of figures by numbers, by figure first; see `sensitivity`.
 
-    Faults have the path of what they are about: ("of", i) or ("to", j).
+    Faults have the path of what they are about: ("of", i) or ("to", j); so has what is named a second time.
     """
+    _require_each_once("of", of)
+    _require_each_once("to", to)
     found = []
     for i, figure in enumerate(of):
         for j, path in enumerate(to):
@@ -193,6 +195,12 @@ def sensitivities(inputs: Inputs, of: Sequence[Figure], to: Sequence[Path]) -> l
                 )
                 raise
     return found
+
+
+def _require_each_once(field: str, named: Sequence[object]) -> None:
+    for i, one in enumerate(named):
+        if one in named[:i]:
+            raise InvalidParameter((field, i), "be named once", remedy="leave out one of the two")
 
 
 def _named(field: str, call: Callable[[], float]) -> float:

@@ -203,6 +203,8 @@ class Dispatcher:
             await context.stream(document.pieces(), etag, self._settings.stalled_seconds, headers, self._turns)
 
     async def _page(self, route: GetRoute, context: RequestContext) -> None:
+        if not route.takes_parameters:
+            refuse_parameters(parameters_of(context.scope), "is not known here", "a catalogue is answered as a whole")
         reply = route.content()
         if b"accept" in context.headers:
             negotiated(context.headers[b"accept"], (route.media_type,))

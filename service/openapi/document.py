@@ -244,7 +244,9 @@ def _in_form(operation: Mapping[str, Any], media: str, ending: str) -> dict[str,
 def _problems_of(route: Route) -> tuple[int, ...]:
     if isinstance(route, PostRoute):
         return _PROBLEMS_OF_QUESTIONS
-    return _PROBLEMS_OF_RESOURCES if isinstance(route, ResourceRoute) else (406, 500)
+    if isinstance(route, ResourceRoute):
+        return _PROBLEMS_OF_RESOURCES
+    return (406, 500) if route.takes_parameters else (406, 422, 500)
 
 
 def _response_name(status: int) -> str:

@@ -407,6 +407,15 @@ async def test_right_in_every_order_of_magnitude() -> None:
         assert np.isfinite(reference["error"])
 
 
+@pytest.mark.parametrize("name", ["errors", "methods", "mistakes", "undecided", "scenes"])
+async def test_catalogues_have_no_parameters_and_pages_may(name: str) -> None:
+    async with client_of(SERVICE) as client:
+        refused = await client.get(f"/v1/{name}?limit=3")
+        assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "?limit")
+        assert (await client.get(f"/v1/{name}")).status_code == 200
+        assert (await client.get("/healthz?limit=3")).status_code == 200
+
+
 async def test_the_catalogue_lists_every_mistake() -> None:
     async with client_of(SERVICE) as client:
         listed = (await client.get("/v1/mistakes")).json()["mistakes"]

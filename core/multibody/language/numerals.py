@@ -129,6 +129,11 @@ class Numerals:
             known[name] = found.number(number, ("let", name))
         return found
 
+    @property
+    def as_written(self) -> bool:
+        """Whether every number is read as it is written."""
+        return not self.moved and not self.instead
+
     def without_places(self) -> Numerals:
         """Return the numerals that take places, attitudes and velocities of bodies as they are written."""
         own = {path: value for path, value in self.instead.items() if path[0] != "bodies" or path[2] not in OF_STATE}

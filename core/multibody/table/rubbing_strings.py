@@ -39,6 +39,9 @@ from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of
 from core.multibody.table.string_measures import Knot, at_most, require_long_enough, written_length
 
+MOST_TURNS = 10**9
+"""Beside the angle between a string's parts; a decimal with an exponent of hundreds is none that anybody counts."""
+
 
 def string_on_pegs(measures: Measures, name: str, connection: String, knots: Sequence[Knot], path: Path) -> None:
     """Add the measure of a string with friction, and what ends its motion.
@@ -100,8 +103,14 @@ def _turns(measures: Measures, connection: String, path: Path) -> Ball:
     if connection.turns is None:
         return ZERO
     turns = measures.numerals.number(connection.turns, (*path, "turns"))
-    if not turns >= 0:
-        raise InvalidParameter((*path, "turns"), "be at least 0")
+    # What is varied or uncertain passes what is between whole numbers, as the turns that would just hold.
+    whole = turns.unique_fmpz() is not None or not measures.numerals.as_written
+    if not (whole and 0 <= turns <= MOST_TURNS):
+        raise InvalidParameter(
+            (*path, "turns"),
+            f"be a whole number from 0 to {MOST_TURNS}",
+            remedy="what is less than a turn follows from the places of the pegs",
+        )
     return 2 * arb.pi() * turns
 
 

@@ -125,3 +125,13 @@ def test_where_other_events_happen_there_is_no_derivative() -> None:
     resting = BALL | {"let": {"g": 9.81, "h": 0}, "times": [1.0]}
     with pytest.raises(NotApplicable, match="no derivative by /let/h here"):
         found(resting, "/trajectory/columns/ball.position/values/0/1", "/let/h")
+
+
+@pytest.mark.parametrize(
+    ("of", "to", "path"),
+    [([SECOND, SECOND], ["/let/g"], ("of", 1)), ([SECOND], ["/let/g", "/let/h", "/let/g"], ("to", 2))],
+)
+def test_what_is_named_twice_is_refused(of: list[Any], to: list[str], path: tuple[str, int]) -> None:
+    with pytest.raises(InvalidParameter, match="named once") as refused:
+        sensitivities(inputs(BALL), [figure_of(one, ()) for one in of], [steps_of(one) for one in to])
+    assert refused.value.path == path

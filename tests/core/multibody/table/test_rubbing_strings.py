@@ -224,6 +224,9 @@ def test_a_string_whose_parts_swing_is_refused() -> None:
         ({"through": ["light", [0, 0]]}, ("through",)),
         ({"friction": -1}, ("friction",)),
         ({"turns": -1}, ("turns",)),
+        ({"turns": 2.5}, ("turns",)),
+        ({"turns": 0.5}, ("turns",)),
+        ({"turns": 1e300}, ("turns",)),
         ({"friction": None}, ("turns",)),
     ],
 )
