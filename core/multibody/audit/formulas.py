@@ -127,6 +127,9 @@ class FormulaValue:
         for name, value in base.items():
             scale = speed if name in self.rates else np.abs(value) + size
             moved = self._of({**base, name: value + SHARE * scale})
+            if np.isnan(moved).any():
+                # At an end of its domain it has values on one side.
+                moved = np.where(np.isnan(moved), self._of({**base, name: value - SHARE * scale}), moved)
             total = total + np.abs(moved - self._of(base)) / SHARE
         return total
 

@@ -195,3 +195,19 @@ def test_what_falls_through_a_floor_is_seen_however_low_it_begins(height: Any) -
     right, wrong = answered(above(0)), answered(above(-100))
     assert right.failure() is None
     assert Audited(right.scene, wrong.answer, wrong.sampler, right.times).failure() is not None
+
+
+@pytest.mark.parametrize("law", ["sqrt(-t)", "acos(1+t)", "sqrt(-t)*length-1"])
+def test_a_law_without_a_value_after_the_start_is_checked_there(law: str) -> None:
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"p": {"mass": 1, "at": [0.6, 0.8]}},
+        "connections": [
+            {"kind": "spring", "name": "s", "a": "p", "b": [0, 0], "law": law, "rest_length": 1},
+            {"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, -5]}},
+        ],
+    }
+    right = answered(scene)
+    assert right.failure() is None
+    assert right.answer.ended is not None
+    assert (right.answer.ended.kind, right.answer.ended.time) == ("formula", 0.0)
