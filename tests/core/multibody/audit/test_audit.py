@@ -207,7 +207,7 @@ def test_a_law_without_a_value_after_the_start_is_checked_there(law: str) -> Non
             {"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, -5]}},
         ],
     }
-    right = answered(scene)
+    right = answered(scene, outputs=("trajectory", "accelerations"))
     assert right.failure() is None
     assert right.answer.ended is not None
     assert (right.answer.ended.kind, right.answer.ended.time) == ("formula", 0.0)
