@@ -253,14 +253,18 @@ class Whole:
         found: Floats = offsets[:, 0] + z @ slopes[:, :, 0].T
         return found
 
-    def misfit(self, q: Floats) -> float:
-        """Return by how much the measures are missed at most, relative to the sum of their terms."""
-        worst, nothing = 0.0, _NO_TERM * largest_magnitude(q)
+    def misfit(self, q: Floats, v: Floats) -> float:
+        """Return by how much the rows are missed at most: measures relative to their terms, rates to the largest."""
+        worst, nothing, fastest = 0.0, _NO_TERM * largest_magnitude(q), largest_magnitude(v)
         for row in self.measures.table.rows:
             if row.measure is not None:
                 value, size = values(row.measure, q)
                 held = size > nothing
                 worst = max(worst, float(np.max(np.abs(value[held]) / size[held], initial=0.0)))
+            elif fastest > 0.0:
+                value, own = rates_along(row.rates, q, v)[0], rates_along(row.rates, q, np.full_like(v, fastest))[1]
+                off, size = np.abs(value - float(row.rate)), own + abs(float(row.rate))
+                worst = max(worst, float(np.max(off[size > 0.0] / size[size > 0.0], initial=0.0)))
         return worst
 
     def multipliers(self, q: Floats, v: Floats) -> Floats:

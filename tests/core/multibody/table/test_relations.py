@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.errors import InvalidParameter, PlacesDisagree
+from core.errors import InvalidParameter, NotApplicable, PlacesDisagree
 from core.multibody.answer import SceneSolution
 from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
@@ -188,3 +188,21 @@ def test_an_unknown_name_is_answered_with_what_relations_may_have() -> None:
         ("connections", 0, "of"),
         "names: p.x, p.y, t; functions: sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, atan2",
     )
+
+
+@pytest.mark.parametrize("equals", ["sin(w.angle)", "tan(w.angle)", "w.angle*cos(w.angle)", "w.angle*exp(w.angle^2)"])
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_relation_that_holds_at_the_start_alone_is_singular_there(equals: str, beside: bool) -> None:
+    """Both sides have the same slope at zero, and differ by the third power of the angle."""
+    thrown = {"p": {"mass": 1, "at": [0.5, 0], "velocity": [10, 10]}} if beside else {}
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"w": wheel(1, 3), **thrown},
+        "connections": [
+            {"kind": "pin", "a": "w", "b": [3, 0]},
+            {"kind": "torque", "body": "w", "torque": 1},
+            relation("w.angle", equals),
+        ],
+    }
+    with pytest.raises(NotApplicable, match="singular"):
+        answer(scene, ("trajectory",))
