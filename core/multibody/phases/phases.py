@@ -35,7 +35,7 @@ from core.multibody.phases.passing_touch import without_passing_touch
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
-from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness, unknown_share
+from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness, stopped_share
 from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import Tracks
 from core.multibody.phases.turning_slip import begins_at_once, turns
@@ -201,16 +201,15 @@ class _Run:
         return False
 
     def _come_to_rest(self) -> None:
-        """Let rough contacts rest of which it is not known whether they strike: an impact would have stopped a slip.
+        """Let contacts rest of which it is not known whether they strike: an impact would have stopped their slip.
 
-        The state is wide enough then for whatever slip the last of their bounces may have left. Without friction
-        nothing but the unknown rate itself is left open, which the contact holds.
+        The state is wide enough then for whatever slip the last of their bounces may have left. Without a slip nothing
+        but the unknown rate itself is left open, which the contact holds.
         """
-        rough = [i for i in self.touching if self.unilateral[i].slips and self.states[i] is State.OPEN]
-        beyond = [] if self.tracks.exact else rough
-        share = unknown_share(self.unilateral, beyond, self.motion.events, self.tracks)
+        beyond = [i for i in self.touching if self.states[i] is State.OPEN] if not self.tracks.exact else []
+        share = stopped_share(self.unilateral, beyond, self.motion.events, self.tracks)
         if share > 0.0:
-            self._settled(self._settling(share, share)[1])
+            self._settled(self._settling(share, math.inf)[1])
 
     def _settled(self, settling: Sequence[int]) -> None:
         """Add the events of bounces that have come to rest."""

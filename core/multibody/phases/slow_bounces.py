@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from core.multibody.algebra.polynomials import is_zero
-from core.multibody.contacts.contact_responses import gap_rate
+from core.multibody.contacts.contact_responses import across_rate, gap_rate, slip_rate
 from core.multibody.phases.recurring_bounces import LISTED
 from core.multibody.phases.tracks import Tracks
 from core.multibody.table.connection_effects import Unilateral
@@ -41,21 +41,27 @@ def slowness(
     return _left(share, unilateral, hit) if share < limit else 0.0
 
 
-def unknown_share(
+def stopped_share(
     unilateral: Sequence[Unilateral], touching: Sequence[int], events: Sequence[MotionEvent], tracks: Tracks
 ) -> float:
-    """Return what is left of bounces whose next rate is not known to be any, as `slowness` does.
+    """Return how much of a slip bounces may have stopped of which it is not known whether they strike, as a share.
+
+    Of the largest rate; zero where nothing slips as far as is known, or nothing bounces so.
 
     Parameters
     ----------
     touching : sequence of int
         Measures that touch now and did not before, and do not approach as far as is known.
     """
-    often = [i for i in touching if _bounce_often(unilateral, [i], events)]
     q, v = tracks.wide()
-    rates = [(gap_rate(unilateral[i], q, v), _fastest(unilateral[i], tracks)) for i in often]
-    share = max((float(x.abs_upper()) / most for x, most in rates if is_zero(x) and most > 0.0), default=0.0)
-    return _left(share, unilateral, often) if share > 0.0 else 0.0
+    found = 0.0
+    for i in touching:
+        one, most = unilateral[i], _fastest(unilateral[i], tracks)
+        rate, slips = gap_rate(one, q, v), [slip_rate(one, q, v), across_rate(one, q, v)]
+        if most > 0.0 and is_zero(rate) and not all(map(is_zero, slips)) and _bounce_often(unilateral, [i], events):
+            slip = sum(float(x.abs_upper()) for x in slips)
+            found = max(found, min(slip / most, _left(float(rate.abs_upper()) / most, unilateral, [i])))
+    return found
 
 
 def _bounce_often(unilateral: Sequence[Unilateral], hit: Sequence[int], events: Sequence[MotionEvent]) -> bool:
