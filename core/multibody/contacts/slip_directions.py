@@ -30,6 +30,8 @@ _DIRECTIONS_TRIED = 48
 _MOST_CUTS = 100
 """Cuts between two samples: digits grow by a factor of 1.44 with each of them, so that some dozen reach 320 bits."""
 
+_DESCRIBED = 2.0**-128
+"""Share of a number below which its width is that of arithmetic in balls alone: pairs of doubles know 2^-106."""
 _TURNS = 4
 """Times that directions of several contacts are turned into those that follow, before Newton's method: where all places
 translate, the first time is exact; elsewhere they come near enough for it."""
@@ -103,10 +105,12 @@ def directions(after: Callable[[Direction], Direction | None], smooth: Direction
         found = after(direction)
         return None if found is None else found[1] * direction[0] - found[0] * direction[1]
 
-    straight = is_zero(smooth[1]) and (is_zero(smooth[0]) or bool(smooth[0] > 0))
-    first = AHEAD if straight else one_of(smooth)
-    follows = after(first)
-    if follows is not None:
+    # A direction of which a motion until now knows no more than pairs do keeps that width: what is across is within it.
+    described = all(float(x.rad()) <= _DESCRIBED * abs(float(x.mid())) for x in smooth if not is_zero(x))
+    for first in (AHEAD, one_of(smooth)) if described else (AHEAD,):
+        follows = after(first)
+        if follows is None:
+            continue
         along, across = first[0] * follows[0] + first[1] * follows[1], first[0] * follows[1] - first[1] * follows[0]
         if is_zero(across) and (is_zero(along) or along > 0):
             return [first]
