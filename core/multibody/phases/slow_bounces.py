@@ -59,8 +59,10 @@ def stopped_share(
         one, most = unilateral[i], _fastest(unilateral[i], tracks)
         rate, slips = gap_rate(one, q, v), [slip_rate(one, q, v), across_rate(one, q, v)]
         if most > 0.0 and is_zero(rate) and not all(map(is_zero, slips)) and _bounce_often(unilateral, [i], events):
-            slip = sum(float(x.abs_upper()) for x in slips)
-            found = max(found, min(slip / most, _left(float(rate.abs_upper()) / most, unilateral, [i])))
+            slip = sum(float(x.abs_upper()) for x in slips) / most
+            # What slips faster than that goes on, but for less than is known of it.
+            if slip <= _left(float(rate.abs_upper()) / most, unilateral, [i]):
+                found = max(found, slip)
     return found
 
 
