@@ -15,6 +15,7 @@ from typing import Any
 
 from service.execution import PRELOAD
 from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, SliceUsed, Stopped, WorkerDied
+from service.execution.lifeline import Lifeline
 from service.execution.messages import decoded, encoded
 from service.execution.worker import Failed, Task, serve, terms_of
 from service.execution.worker_pool import Processes
@@ -71,9 +72,11 @@ class Compute:
         metrics.long.set_function(lambda: self.processes.long)
         self._held = 0
         self._up = self._stopping = False
+        self._lifeline: Lifeline | None = None
 
     async def start(self) -> None:
         """Start the processes and return when each is ready."""
+        self._lifeline = Lifeline()
         await self.processes.start()
         self._up = True
 
@@ -81,6 +84,9 @@ class Compute:
         """Refuse and kill what still runs."""
         self._stopping = True
         await self.processes.stop()
+        if self._lifeline is not None:
+            self._lifeline.close()
+            self._lifeline = None
 
     @property
     def any_ready(self) -> bool:
