@@ -200,8 +200,9 @@ class Service(FastAPI):
             await asyncio.sleep(1.0)
 
     def _prepare(self) -> None:
-        self.answering.warm(work=self.settings.inline_work)
+        # What writing the document leaves free is taken up by what stays.
         self.openapi_text()
+        self.answering.warm(work=self.settings.inline_work)
 
 
 def create_app(settings: Settings | None = None) -> Service:
