@@ -15,6 +15,7 @@ from core.multibody.audit.outlines import ByCorners, OnOutline
 from core.multibody.audit.placement import Place, Undefined
 from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
 from core.multibody.audit.surfaces import Face, Round, Tip
+from core.multibody.audit.turns_in_space import AxialStop, axis_between
 from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.written import GROUND, Number
 
@@ -53,6 +54,9 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
         least = connection.at_least is not None
         field = "at_least" if least else "at_most"
         limit = reader.number(getattr(connection, field), (*path, field))
+        if reader.dimension == 3:
+            bodies, axis = axis_between(reader, connection.a, connection.b)
+            return AxialStop(name, bodies, axis, limit, 1 if least else -1, touch)
         first, other = str(connection.a), None if connection.b in (None, GROUND) else str(connection.b)
         both = (first,) if other is None else (first, other)
         return Stop(name, both, first, other, limit, 1 if least else -1, touch)

@@ -141,8 +141,14 @@ class Definition:
         return None
 
     def steps(self, force: str) -> tuple[float, ...]:
-        """Return by how much a gap may be off because whole turns are not counted (m)."""
+        """Return by how much a gap or a force by a law may be off because whole turns are not counted (m, rad, N m)."""
         return ()
+
+    def without_steps(self, force: str, missed: Numbers) -> Numbers:
+        """Return what a force by a law misses, but for its steps."""
+        for step in self.steps(force):
+            missed = missed - step * np.round(missed / step)
+        return missed
 
     def closed(self, state: Numbers | None, count: int) -> Numbers | None:
         """Return at which of some samples a gap is closed, by its state; None where the answer does not say.
@@ -184,6 +190,11 @@ class Definition:
     def driven(self) -> float:
         """Speed or rate that it prescribes (m/s, rad/s)."""
         return max((place.quickness or 0.0 for place in self.places()), default=0.0)
+
+    @property
+    def drives(self) -> bool:
+        """Whether it may bring energy while impulses act."""
+        return self.driven > 0.0 or (self.works() and self.holds)
 
     def works(self) -> bool:
         """Return whether it takes or brings energy beside its potential: it does where a place is moved."""
@@ -255,6 +266,11 @@ class Definition:
     def kinetic(self, placement: Placement, motion: Motion) -> Numbers:
         """Return the kinetic energy of what has mass in it (J)."""
         return np.zeros(())
+
+    @property
+    def winds(self) -> bool:
+        """Whether its potential depends on whole turns that placements do not tell."""
+        return False
 
     def potential(self, placement: Placement) -> Numbers:
         """Return the potential energy (J)."""

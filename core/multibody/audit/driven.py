@@ -11,6 +11,7 @@ from core.multibody.audit.formulas import FormulaValue
 from core.multibody.audit.joints import RodDefinition, SliderDefinition
 from core.multibody.audit.laws import Twisting
 from core.multibody.audit.placement import Motion, Numbers, Place, Placement, dot, rate
+from core.multibody.audit.strings import StringDefinition
 
 
 class Driven:
@@ -75,6 +76,23 @@ class DrivenRod(Driven, RodDefinition):
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
         return {"length": self.distance(placement) - self.drive.value(placement, {})}
+
+
+@dataclass(frozen=True)
+class DrivenString(Driven, StringDefinition):
+    """A string is as long as is given by time (m); the length of its run is that of its way at the start."""
+
+    drive: FormulaValue
+
+    @property
+    def drives(self) -> bool:
+        """See `Definition.drives`."""
+        return True
+
+    def gaps(self, placement: Placement) -> Mapping[str, Numbers]:
+        """See `Definition.gaps`."""
+        (run,) = self.runs
+        return {f"{run.name}.tension": self.drive.value(placement, {}) - run.extent(placement)}
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from core.multibody.audit.definitions import Description
 from core.multibody.audit.energy import kinetic
 from core.multibody.audit.failure import MARGIN, Ledger
 from core.multibody.audit.newton import Acceleration, Freedoms, balance
-from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, Undefined, rate
+from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, Undefined, moved
 from core.multibody.audit.samples import ATTITUDE, POSITION, SPIN, VELOCITY, Samples
 from core.systems.trajectory import MotionEvent
 
@@ -133,7 +133,7 @@ class Impacts:
     def _check_energy(
         self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], times: Numbers
     ) -> None:
-        if any(one.driven or (one.works() and one.holds) for one in description.connections):
+        if any(one.drives for one in description.connections):
             # What drives may bring energy while impulses act, whatever its rate is at the start.
             return
         energies = [kinetic(description, Samples(times, side.placement, side.motion, {}, {}, {})) for side in sides]
@@ -162,7 +162,7 @@ class Impacts:
                 if not rows or touch is None:
                     continue
                 before, after = (
-                    rate(lambda at, of=connection, force=force: of.gaps(at)[force], side.placement, side.motion)[rows]  # type: ignore[misc]
+                    connection.gaps(moved(side.placement, side.motion, in_time=True))[force].imag[rows] / STEP
                     for side in sides
                 )
                 # Bounces that are too small to be followed end: what has come to rest stays closed.

@@ -29,7 +29,14 @@ from core.multibody.audit.laws import (
     TorsionSpringDefinition,
     TurnDamper,
 )
-from core.multibody.audit.turns_in_space import AxialDamper, AxialMotor, axis_in_body
+from core.multibody.audit.turns_in_space import (
+    AxialDamper,
+    AxialDamperByFormula,
+    AxialDrive,
+    AxialMotor,
+    AxialSpring,
+    axis_between,
+)
 from core.multibody.language.forces import (
     AppliedForce,
     Damper,
@@ -63,8 +70,13 @@ def spring(connection: Spring, reader: Reader, name: str, path: Path) -> Definit
 @definition_of.register
 def torsion_spring(connection: TorsionSpring, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a torsion spring."""
-    bodies, a, b = _turning(connection)
     stiffness = reader.number(connection.stiffness, (*path, "stiffness"))
+    if reader.dimension == 3:
+        at_rest = 0.0
+        if connection.rest_angle is not None:
+            at_rest = reader.number(connection.rest_angle, (*path, "rest_angle"))
+        return AxialSpring(name, *axis_between(reader, connection.a, connection.b), stiffness, at_rest)
+    bodies, a, b = _turning(connection)
     if connection.rest_angle is None:
         rest = float(TorsionSpringDefinition(name, bodies, a, b, stiffness, 0.0).turn(reader.start))
     else:
@@ -75,14 +87,18 @@ def torsion_spring(connection: TorsionSpring, reader: Reader, name: str, path: P
 @definition_of.register
 def damper(connection: Damper, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a damper of a length or of a turn."""
+    if connection.measure == "turn" and reader.dimension == 3:
+        bodies, axis = axis_between(reader, connection.a, connection.b)
+        if connection.law is None:
+            return AxialDamper(name, bodies, axis, reader.number(connection.coefficient, (*path, "coefficient")))
+        formula = value_or_formula(reader, connection.law, {"rate": axis.turning}, (*path, "law"))
+        return AxialDamperByFormula(name, bodies, axis, formula)
     if connection.measure == "turn" and connection.law is not None:
         return damper_by_law(connection, reader, name, _turning(connection), path)
     if connection.law is not None:
         a, b = ends_of(connection, reader, path)
         return spring_by_law(Spring(connection.a, connection.b, law=connection.law), reader, name, a, b, path)
     coefficient = reader.number(connection.coefficient, (*path, "coefficient"))
-    if connection.measure == "turn" and reader.dimension == 3:
-        return AxialDamper(name, *axis_in_body(connection, reader), coefficient)
     if connection.measure == "turn":
         return TurnDamper(name, *_turning(connection), coefficient)
     a, b = ends_of(connection, reader, path)
@@ -93,8 +109,10 @@ def damper(connection: Damper, reader: Reader, name: str, path: Path) -> Definit
 def motor(connection: Motor, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a motor."""
     if reader.dimension == 3:
-        rate = value_or_formula(reader, connection.rate, {}, (*path, "rate"))
-        return AxialMotor(name, *axis_in_body(connection, reader), rate)
+        bodies, axis = axis_between(reader, connection.a, connection.b)
+        if connection.drive is not None:
+            return AxialDrive(name, bodies, axis, value_or_formula(reader, connection.drive, {}, (*path, "drive")))
+        return AxialMotor(name, bodies, axis, value_or_formula(reader, connection.rate, {}, (*path, "rate")))
     if connection.drive is not None:
         drive = value_or_formula(reader, connection.drive, {}, (*path, "drive"))
         return DrivenTurn(name, *_turning(connection), drive)

@@ -267,10 +267,10 @@ class _Connection:
                 continue
 
             def law(at: Samples, key: str = key) -> Numbers:
-                return self._laws(at)[key] - at.forces[key]
+                return connection.without_steps(key, self._laws(at)[key] - at.forces[key])
 
             size = np.abs(value) + connection.law_size(samples.placement, self.size, self.speed)
-            rest = value - samples.forces[key]
+            rest = connection.without_steps(key, value - samples.forces[key])
             rows = ~np.isnan(rest)
             if connection.switches:
                 ahead = connection.ahead(samples.placement, samples.motion)

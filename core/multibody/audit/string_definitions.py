@@ -11,6 +11,8 @@ from core.multibody.audit.bodies import Path, Reader
 from core.multibody.audit.contact_definitions import touch_of
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
+from core.multibody.audit.driven import DrivenString
+from core.multibody.audit.formula_definitions import value_or_formula
 from core.multibody.audit.placement import length
 from core.multibody.audit.strings import (
     ChainDefinition,
@@ -46,6 +48,9 @@ def string(connection: String, reader: Reader, name: str, path: Path) -> Definit
         runs.append(run_of(part, tuple(knots[first : last + 1]), pairs, given, reader.start))
     bodies = tuple(dict.fromkeys(body for knot in knots for body in knot.place.bodies))
     touch = touch_of(reader, name, path, connection.restitution)
+    if connection.drive is not None:
+        drive = value_or_formula(reader, connection.drive, {}, (*path, "drive"))
+        return DrivenString(name, bodies, tuple(runs), touch, drive)
     if connection.friction is None:
         return StringDefinition(name, bodies, tuple(runs), touch)
     # With a wrap theta the ratio of tensions exp(mu theta) is one of their difference to their mean.

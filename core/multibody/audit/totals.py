@@ -122,7 +122,9 @@ def _totals(description: Description, samples: Samples, names: Iterable[str]) ->
 
     What has mass beside the bodies has momenta that are not formed here.
     """
-    every: dict[str, Total] = {KINETIC: partial(kinetic, description), POTENTIAL: partial(potential, description)}
+    every: dict[str, Total] = {KINETIC: partial(kinetic, description)}
+    if not any(connection.winds for connection in description.connections):
+        every[POTENTIAL] = partial(potential, description)
     bodies = list(description.bodies.values())
     if not any(connection.mass for connection in description.connections):
         every |= {MOMENTUM: partial(_momentum, bodies), ANGULAR: partial(_angular, bodies)}

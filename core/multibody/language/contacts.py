@@ -73,12 +73,12 @@ class Contact(SurfaceConnection):
     `place`, a point or a body with a rim or a shape, does not pass `on`: a face ``{at, slope}``, free on the left
     of its slope, or a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. In space
     a face is a plane ``{at, normal}``, free on the side of its normal, about which it may turn at a `rate` (rad/s), and
-    a circle is a sphere. Or `a` does not
-    pass `b`, of which one has a rim or a shape at least. Or with `measure` "turn", the turn of `a` relative to `b`
-    stays `at_least` or `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order`
-    says, where several impacts at once leave their outcome open, in which order they happen: those of equal order
-    together. `impacts` is the law of its impacts, that of the scene if left out. `tangential_restitution` is the share
-    of its slip that an impact turns back where friction suffices.
+    a circle is a sphere. Or `a` does not pass `b`, of which one has a rim or a shape at least. Or with `measure`
+    "turn", the turn of `a` relative to `b` stays `at_least` or `at_most` an angle; in space it is that about the axis
+    of their joint, from the start. `friction` is one coefficient or two, that of sticking first; `order` says, where
+    several impacts at once leave their outcome open, in which order they happen: those of equal order together.
+    `impacts` is the law of its impacts, that of the scene if left out. `tangential_restitution` is the share of its
+    slip that an impact turns back where friction suffices.
     """
 
     place: Place | None = None
@@ -101,3 +101,9 @@ class Contact(SurfaceConnection):
     def turns(self, place: object, surroundings: Surroundings) -> bool:
         """See `SurfaceConnection.turns`; in space a ball alone has friction that turns it."""
         return surroundings.plane or (self.friction is not None and surroundings.rim(place))
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`; a stop of space needs the axes of what it stops."""
+        yield from super().aspects(surroundings)
+        if self.measure == "turn" and not surroundings.plane:
+            yield from ((end, "orientation") for end in (self.a, self.b))

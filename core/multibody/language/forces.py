@@ -17,6 +17,11 @@ Force = Annotated[Vector, Measured("N")]
 """A vector in newtons."""
 
 
+def _turns(connection: TwoEnded, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+    """Return what a connection of two turns needs of its bodies."""
+    return [(end, "turn" if surroundings.plane else "orientation") for end in (connection.a, connection.b)]
+
+
 @dataclass(frozen=True)
 class Spring(TwoEnded):
     """A spring between two places, linear by its `stiffness` (N/m) or with its pull as a formula `law` (N).
@@ -39,7 +44,10 @@ class Spring(TwoEnded):
 
 @dataclass(frozen=True)
 class TorsionSpring(TwoEnded):
-    """A linear spring between the turns of two bodies, or of one and the ground (N m/rad), in the plane."""
+    """A linear spring between the turns of two bodies, or of one and the ground (N m/rad).
+
+    In space they turn about the axis of the joint between them, from the start, where their turn is zero.
+    """
 
     a: str
     stiffness: Annotated[Number, Measured("N m/rad")]
@@ -50,7 +58,7 @@ class TorsionSpring(TwoEnded):
 
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""
-        return [(self.a, "turn"), (self.b, "turn")]
+        return _turns(self, surroundings)
 
 
 @dataclass(frozen=True)
@@ -94,7 +102,7 @@ class Damper(TwoEnded):
         """See `Connection.aspects`."""
         if self.measure != "turn":
             return ()
-        return [(end, "turn" if surroundings.plane else "orientation") for end in (self.a, self.b)]
+        return _turns(self, surroundings)
 
     def formulas(self) -> Iterable[object]:
         """See `Connection.formulas`."""
@@ -103,9 +111,9 @@ class Damper(TwoEnded):
 
 @dataclass(frozen=True)
 class Motor(TwoEnded):
-    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), or in the plane by a `drive` (rad).
+    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), or by a `drive` (rad).
 
-    Both may be formulas of time. In space it turns about the axis of the pin that joins the two.
+    Both may be formulas of time. In space it turns about the axis of the joint between the two, from the start.
     """
 
     a: str
@@ -117,7 +125,7 @@ class Motor(TwoEnded):
 
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""
-        return [(end, "turn" if surroundings.plane else "orientation") for end in (self.a, self.b)]
+        return _turns(self, surroundings)
 
 
 @dataclass(frozen=True)

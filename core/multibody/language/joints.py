@@ -70,6 +70,26 @@ class Cylindrical(TwoEnded):
 
 
 @dataclass(frozen=True)
+class Screw(TwoEnded):
+    """In space, place `a` stays on a line along the `axis` through place `b`, and moves along it as the bodies turn.
+
+    By one turn of `a` relative to `b`, positive about the axis, it moves by the `pitch` (m), negative of a left-hand
+    screw.
+    """
+
+    a: Place
+    b: Place
+    axis: Direction
+    pitch: Length
+    name: str | None = None
+    kind: ClassVar[str] = "screw"
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
+
+
+@dataclass(frozen=True)
 class Universal(TwoEnded):
     """In space, two places coincide, and the first of two `axes`, fixed in `a`, stays at right angles to the second.
 
@@ -166,7 +186,7 @@ def axis_of_turn(connections: Iterable[tuple[int, Connection]], a: str, b: str) 
         Of the bodies; the ground is one.
     """
     for i, one in connections:
-        if isinstance(one, (Pin, Cylindrical)) and one.axis is not None:
+        if isinstance(one, (Pin, Cylindrical, Screw)) and one.axis is not None:
             ends = {end.partition(".")[0] if isinstance(end, str) else GROUND for end in (one.a, one.b)}
             if ends == {a, b}:
                 return one.axis, ("connections", i, "axis")

@@ -19,13 +19,14 @@ class String(Connection):
     It is taut at the start unless it is longer than its way. `restitution` is that of the jerk when it becomes taut;
     where it is given, velocities may open or jerk the string at the start. Between its ends it may rub on pegs, points
     of the ground, with `friction`: one coefficient or two, that of sticking first. Around them it winds by the angle
-    between its parts, and as many whole `turns` beside that.
+    between its parts, and as many whole `turns` beside that. With a `drive` it is as long as that says by time (m).
     """
 
     through: Sequence[Place]
     sides: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     slips: Sequence[str] = ()
     length: Length | None = None
+    drive: Length | None = None
     restitution: Ratio | None = None
     order: Ratio | None = None
     friction: Ratio | Sequence[Ratio] | None = None

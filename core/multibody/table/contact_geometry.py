@@ -18,6 +18,7 @@ from core.multibody.table.measures import Measures
 from core.multibody.table.outlines import outlines
 from core.multibody.table.rows import add_rows
 from core.multibody.table.touching_in_plane import circle, face
+from core.multibody.table.turns_in_space import turn_in_space
 
 
 @add_rows.register
@@ -41,7 +42,12 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
         )
     tangential = _tangential(measures, connection, path, rubs=rubs and law == "newton")
     common = Unilateral(name, {}, None, static, kinetic, restitution, order=order, law=law, tangential=tangential)
-    if measures.dimension == 3:
+    if connection.measure == "turn":
+        if rubs:
+            raise InvalidParameter((*path, "friction"), "be left out of a stop that limits a turn")
+        gap = _turn(measures, connection, name, path)
+        found = [replace(common, gap=gap, closes="stop", opens="release", unit="N m")]
+    elif measures.dimension == 3:
         found = [
             replace(
                 common,
@@ -53,11 +59,6 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
             )
             for touching in contact_in_space(measures, connection, name, path, rubs=rubs)
         ]
-    elif connection.measure == "turn":
-        if rubs:
-            raise InvalidParameter((*path, "friction"), "be left out of a stop that limits a turn")
-        gap = _turn(measures, connection, path)
-        found = [replace(common, gap=gap, closes="stop", opens="release", unit="N m")]
     elif connection.measure != "gap":
         raise InvalidParameter((*path, "measure"), 'be "gap" or "turn"')
     else:
@@ -129,17 +130,20 @@ def coefficients_of_friction(measures: Measures, value: object, path: Path) -> t
     return static, kinetic
 
 
-def _turn(measures: Measures, connection: Contact, path: Path) -> Poly:
+def _turn(measures: Measures, connection: Contact, name: str, path: Path) -> Poly:
     for entry in ("place", "on"):
         if getattr(connection, entry) is not None:
             raise InvalidParameter((*path, entry), 'be left out where the measure is "turn"')
     if connection.a is None:
         raise InvalidParameter((*path, "a"), "be given")
-    turn = measures.coordinates.turn_of
     b = GROUND if connection.b is None else connection.b
     if connection.a == b:
         raise InvalidParameter((*path, "b"), "be another body than a")
-    angle = difference(turn(connection.a, (*path, "a")), turn(b, (*path, "b")))
+    if measures.dimension == 3:
+        angle = turn_in_space(measures, name, connection.a, b, path)
+    else:
+        turn = measures.coordinates.turn_of
+        angle = difference(turn(connection.a, (*path, "a")), turn(b, (*path, "b")))
     if (connection.at_least is None) == (connection.at_most is None):
         raise InvalidParameter(path, "have either at_least or at_most")
     if connection.at_least is not None:

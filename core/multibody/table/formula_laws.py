@@ -177,7 +177,8 @@ def damper_by_law(connection: Damper, measures: Measures, name: str, measured: P
     if connection.coefficient is not None:
         raise InvalidParameter((*path, "law"), "be left out beside a coefficient")
     where, own = (*path, "law"), {"rate": Input(measured, rate=True)}
-    own["length" if unit == "N" else "angle"] = Input(measured)
+    if unit == "N" or measures.dimension == 2:
+        own["length" if unit == "N" else "angle"] = Input(measured)
     formula = written(measures, connection.law, own, where)
     push = {key[0]: -x for key, x in measured.items() if key}
     law = add_law(measures, name, formula, own, push, where)

@@ -1,4 +1,4 @@
-"""Rows of joints that are of space alone: cylindrical and universal."""
+"""Rows of joints that are of space alone: cylindrical joints, screws and universal joints."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from core.balls import as_text
 from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.multibody.algebra.directions import scalar_product, unit
-from core.multibody.algebra.polynomials import ONE, constant, dot
-from core.multibody.language.joints import Cylindrical, Universal
+from core.multibody.algebra.polynomials import ONE, combined, constant, difference, dot, evaluated, is_zero
+from core.multibody.language.joints import Cylindrical, Screw, Universal
+from core.multibody.language.written import GROUND
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.moving_places import ends_of, require_two_bodies
 from core.multibody.table.rows import add_rows
+from core.multibody.table.turns_in_space import turn_in_space
 
 
 @add_rows.register
@@ -23,6 +25,24 @@ def cylindrical(connection: Cylindrical, measures: Measures, name: str, path: Pa
     axis = unit(measures.numerals.vector(connection.axis, where, 3), where)
     measures.slide(name, a, b, measures.in_body(b.body, axis), where)
     measures.aligned(name, a.body, b.body, [axis], path)
+
+
+@add_rows.register
+def screw(connection: Screw, measures: Measures, name: str, path: Path) -> None:
+    """Hold a place on a line as a cylindrical joint does, and its way along that to the turn about it."""
+    cylindrical(Cylindrical(connection.a, connection.b, connection.axis), measures, name, path)
+    a, b = ends_of(connection, measures, name, path)
+    pitch = measures.numerals.number(connection.pitch, (*path, "pitch"))
+    if is_zero(pitch):
+        remedy = "hold what does not move along its axis by a pin"
+        raise InvalidParameter((*path, "pitch"), "be a number other than 0 m", remedy=remedy)
+    axis = unit(measures.numerals.vector(connection.axis, (*path, "axis"), 3), (*path, "axis"))
+    way = measures.coordinates.vector_of(b.body, measures.in_body(b.body, axis), path)
+    along = dot(way, [difference(x, y) for x, y in zip(a.at, b.at, strict=True)])
+    turn = turn_in_space(measures, name, a.body or GROUND, b.body or GROUND, path)
+    begun = constant(evaluated(along, measures.table.q))
+    row = measures.hold(name, combined((ONE, along), (-pitch / (2 * ONE.pi()), turn), (-ONE, begun)))
+    measures.force(f"{name}.force", [(row, constant(ONE))])
 
 
 @add_rows.register

@@ -81,8 +81,6 @@ def spring(connection: Spring, measures: Measures, name: str, path: Path) -> Non
 def torsion_spring(connection: TorsionSpring, measures: Measures, name: str, path: Path) -> None:
     """Add a linear spring between two turns: energy k (angle - rest)^2/2."""
     k = _positive(measures, connection.stiffness, (*path, "stiffness"))
-    if measures.dimension == 3:
-        raise InvalidParameter((*path, "kind"), "be another one in space, such as spring")
     turn = _turn(measures, connection, name, path)
     if connection.rest_angle is None:
         rest = evaluated(turn, measures.table.q)
@@ -104,8 +102,6 @@ def damper(connection: Damper, measures: Measures, name: str, path: Path) -> Non
         measured, unit = coordinate(measures.length(name, a, b, path)), "N"
     else:
         raise InvalidParameter((*path, "measure"), 'be "length" or "turn"')
-    if connection.law is not None and measures.dimension == 3 and unit == "N m":
-        raise InvalidParameter((*path, "law"), "be a coefficient for a turn in space")
     if connection.law is not None:
         damper_by_law(connection, measures, name, measured, unit, path)
         return
@@ -126,8 +122,6 @@ def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
     turn = _turn(measures, connection, name, path)
     if (connection.rate is None) == (connection.drive is None):
         raise InvalidParameter(path, "have a rate or a drive")
-    if connection.drive is not None and measures.dimension == 3:
-        raise InvalidParameter((*path, "drive"), "be left out in space, where a motor has a rate")
     if connection.drive is not None:
         drive = driven(measures, name, connection.drive, (*path, "drive"))
         apart = evaluated(difference(turn, drive), measures.table.q)
@@ -226,7 +220,7 @@ def _turn(measures: Measures, connection: TwoEnded, name: str, path: Path) -> Po
     if connection.a == connection.b:
         raise InvalidParameter((*path, "b"), "be another body than a")
     if measures.dimension == 3:
-        return turn_in_space(measures, name, connection, path)
+        return turn_in_space(measures, name, connection.a, connection.b, path)
     turn = measures.coordinates.turn_of
     return difference(turn(connection.a, (*path, "a")), turn(connection.b, (*path, "b")))
 

@@ -28,6 +28,7 @@ from core.multibody.algebra.polynomials import (
 from core.multibody.language.numerals import member
 from core.multibody.language.strings import String
 from core.multibody.table.connection_effects import Limit
+from core.multibody.table.formulas_of_time import driven
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.rows import add_rows
@@ -55,6 +56,8 @@ def string(connection: String, measures: Measures, name: str, path: Path) -> Non
         For fewer than two things to pass, sides that do not exist or cannot be, and strings of fixed points.
     """
     knots = _knots(measures, connection, path)
+    if connection.drive is not None:
+        _require_drivable(connection, knots, path)
     if connection.friction is not None:
         string_on_pegs(measures, name, connection, knots, path)
         return
@@ -75,6 +78,35 @@ def string(connection: String, measures: Measures, name: str, path: Path) -> Non
             raise InvalidParameter(
                 (*path, "sides", knot.name), "be sides between which the string winds around the drum in one sense"
             )
+
+
+def _require_drivable(connection: String, knots: Sequence[Knot], path: Path) -> None:
+    where = (*path, "drive")
+    for other, given in (("length", connection.length), ("friction", connection.friction)):
+        if given is not None:
+            raise InvalidParameter(where, f"be left out beside {other}")
+    if any(knot.radius is not None for knot in knots):
+        remedy = "drive the turn of a drum by a motor"
+        raise InvalidParameter(where, "be left out of a string that winds about drums", remedy=remedy)
+
+
+def _driven_length(measures: Measures, part: str, way: Ball, connection: String, path: Path) -> Poly:
+    """Return the length of a string that a formula of time gives, which is its way at the start where it is taut."""
+    where = (*path, "drive")
+    span = driven(measures, part, connection.drive, where)
+    now = evaluated(span, measures.table.q)
+    if not now > 0:
+        raise InvalidParameter(where, "be greater than 0 m at the start")
+    if measures.one_sided:
+        require_long_enough(measures, way, now, path, "drive")
+        # A coordinate of its own, whose row has the power of what drives it while the string is taut.
+        length = measures.table.coordinate(f"{part}.drive", "m", now)
+        measures.hold(part, difference(coordinate(length), span))
+        return coordinate(length)
+    if not measures.sketch:
+        require_long_enough(measures, way, now, path, "drive")
+        _require_taut(way, now, path, "drive")
+    return span
 
 
 def _knots(measures: Measures, connection: String, path: Path) -> list[Knot]:
@@ -142,7 +174,7 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
                 d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
                 total = combined((ONE, total), (ONE, constant(measures.squared(d).sqrt())))
                 continue
-            if len(run) == 2:
+            if len(run) == 2 and connection.drive is None:
                 _single(measures, part, a, b, connection, path)
                 return
             index = measures.length(name, a.point, b.point, b.at)
@@ -154,13 +186,19 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
     if not rates:
         raise InvalidParameter((*path, "through"), "pass something that moves")
     if straight:
-        held = evaluated(total, measures.table.q) if length is None else written_length(measures, length, path)
-        longer = combined((ONE, total), (-held, constant(ONE)))
+        way = evaluated(total, measures.table.q)
+        if connection.drive is not None:
+            held = _driven_length(measures, part, way, connection, path)
+        else:
+            held = constant(way if length is None else written_length(measures, length, path))
+            if measures.one_sided:
+                require_long_enough(measures, way, evaluated(held, measures.table.q), path)
+            else:
+                _require_taut(way, evaluated(held, measures.table.q), path)
+        longer = difference(total, held)
         if measures.one_sided:
-            require_long_enough(measures, evaluated(total, measures.table.q), held, path)
             measures.unilateral.append(at_most(measures, part, longer, connection, path))
             return
-        _require_taut(evaluated(total, measures.table.q), held, path)
         row = measures.hold(name, longer)
     elif measures.one_sided:
         # What the string lacks to be taut is a coordinate: it follows from rates that no measure gives.
@@ -174,10 +212,10 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
     measures.limits.append(Limit("slack", part, force=force))
 
 
-def _require_taut(way: Ball, length: Ball, path: Path) -> None:
+def _require_taut(way: Ball, length: Ball, path: Path, field: str = "length") -> None:
     if length - way > SLACK * length:
         raise SlackAtStart(
-            (*path, "length"), f"be {float(way):.10g} m here, where a string has to be taut", remedy="leave it out"
+            (*path, field), f"be {float(way):.10g} m here, where a string has to be taut", remedy="leave it out"
         )
 
 

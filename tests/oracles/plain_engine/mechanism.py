@@ -20,6 +20,7 @@ from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.outlines import OnOutline
 from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, rate, with_rate
 from core.multibody.audit.strings import ChainDefinition, Straight, StringDefinition
+from core.multibody.audit.turns_in_space import AxialStop
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 
 _STENCIL = np.array([4.0, 3.0, 2.0, 1.0, -1.0, -2.0, -3.0, -4.0])
@@ -274,7 +275,7 @@ def _one_sided(one: Definition, placement: Placement, still: Motion, reader: Rea
     closes, opens, rolls = "touch", "lift-off", False
     if isinstance(one, StringDefinition):
         closes, opens = "taut", "slack"
-    elif isinstance(one, Stop):
+    elif isinstance(one, (Stop, AxialStop)):
         closes, opens = "stop", "release"
     elif isinstance(one, OnFace):
         rolls = one.tip.size > 0.0

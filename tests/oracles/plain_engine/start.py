@@ -58,7 +58,7 @@ def start(mechanism: Mechanism, faster: float = 1.0) -> tuple[State, list[int]]:
     held = [k for k in range(len(rows.owners)) if k not in wished]
     given, speeds = _given(mechanism, state)
     lines, values = np.concatenate([rows.lines[held], given]), np.concatenate([-rows.rates[held], faster * speeds])
-    if values.any():
+    if values.any() or rows.rates[wished].any():
         for k in wished:
             if _independent(lines, rows.lines[k]):
                 lines, values = np.vstack([lines, rows.lines[k]]), np.append(values, -rows.rates[k])

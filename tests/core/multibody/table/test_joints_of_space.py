@@ -115,3 +115,40 @@ def test_joints_of_space_are_refused_in_the_plane(kind: str) -> None:
     with pytest.raises(InvalidParameter, match="of the plane") as refused:
         solve_scene(scene_from(scene), TIMES)
     assert refused.value.path == ("connections", 0, "kind")
+
+
+@pytest.mark.parametrize("pitch", [2, -2])
+def test_a_nut_falls_along_its_screw(pitch: int) -> None:
+    """With p = pitch/(2 pi) the weight along the axis moves m + J/p^2; the screw bears J/p^2 times the acceleration."""
+    scene = sleeve([1, 2, 2])
+    scene["connections"][0] |= {"kind": "screw", "pitch": pitch}
+    found = solve_scene(scene_from(scene), TIMES, OUTPUTS)
+    assert found.model.degrees_of_freedom == 1
+    assert found.trajectory is not None
+    columns, t = found.trajectory.columns, np.array(TIMES)
+    p, axis = pitch / (2 * np.pi), np.array([1, 2, 2]) / 3
+    gain = -2 * 9 * (2 / 3) / (2 + 3 / p**2)
+    np.testing.assert_allclose(columns["body.position"].values, np.outer(gain * t**2 / 2, axis), atol=1e-12)
+    np.testing.assert_allclose(columns["body.angular_velocity"].values, np.outer(gain * t / p, axis), atol=1e-12)
+    np.testing.assert_allclose(columns["sleeve.force"].values, -3 * gain / p**2, rtol=1e-12)
+
+
+def test_a_screw_that_is_driven_lifts_its_nut() -> None:
+    """One turn a second with a pitch of 1/4 m: the motor does the work against the weight of 18 N."""
+    scene = sleeve([0, 0, 1])
+    scene["connections"][0] |= {"kind": "screw", "pitch": "1/4"}
+    scene["connections"].append({"kind": "motor", "name": "motor", "a": "body", "drive": "2*pi*t"})
+    found = solve_scene(scene_from(scene), TIMES, (*OUTPUTS, "work-in-time"))
+    assert found.trajectory is not None
+    columns, t = found.trajectory.columns, np.array(TIMES)
+    np.testing.assert_allclose(columns["body.position"].values[:, 2], t / 4, atol=1e-13)
+    np.testing.assert_allclose(columns["motor.torque"].values, 18 / 4 / (2 * np.pi), rtol=1e-12)
+    np.testing.assert_allclose(columns["motor.work"].values, 18 * t / 4, atol=1e-12)
+
+
+def test_a_screw_without_pitch_is_refused() -> None:
+    scene = sleeve([0, 0, 1])
+    scene["connections"][0] |= {"kind": "screw", "pitch": 0}
+    with pytest.raises(InvalidParameter, match="other than 0 m") as refused:
+        solve_scene(scene_from(scene), TIMES, OUTPUTS)
+    assert refused.value.path == ("connections", 0, "pitch")

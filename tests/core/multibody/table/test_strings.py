@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.errors import InvalidParameter
 from core.multibody.answer import SceneSolution
 from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
@@ -154,3 +155,54 @@ def test_a_massless_pulley_that_hangs_straight_down_is_followed_until_a_weight_r
     assert answer.trajectory is not None
     fallen = -1 - gain * np.asarray(answer.trajectory.time) ** 2 / 2
     assert np.max(np.abs(column(answer, "m.position").values[:, 1] - fallen)) < 1e-14
+
+
+def winch(drive: str, **more: Any) -> dict[str, Any]:
+    """Return a weight of 2 kg that hangs 1 m below the origin on a string whose length is driven."""
+    string = {"kind": "string", "name": "s", "through": ["bob", [0, 0]], "drive": drive, **more}
+    return {"gravity": [0, -10], "bodies": {"bob": {"mass": 2, "at": [0, -1]}}, "connections": [string]}
+
+
+def test_a_winch_lifts_a_weight() -> None:
+    """With the length 1 - t^2/4 the weight of 20 N is accelerated by 1/2 m/s^2."""
+    times = np.array([0.0, 0.5, 1.0])
+    found = solve_scene(read(winch("1 - t^2/4")), times, ("trajectory", "forces-in-time", "work-in-time"))
+    np.testing.assert_allclose(column(found, "bob.position").values[:, 1], -1 + times**2 / 4, atol=1e-14)
+    np.testing.assert_allclose(column(found, "s.tension").values, 21, rtol=1e-14)
+    np.testing.assert_allclose(column(found, "s.work").values, 21 * times**2 / 4, atol=1e-13)
+
+
+def test_a_string_that_is_paid_out_too_fast_goes_slack() -> None:
+    """The length 1 + t^3 is accelerated by 6 t, the weight by 10: from 5/3 s on it falls freely."""
+    found = solve_scene(read(winch("1 + t^3", restitution=0)), [0.0, 1.0, 2.0])
+    assert [event.kind for event in found.events] == ["slack"]
+    assert found.events[0].time == pytest.approx(5 / 3, abs=1e-13)
+    first = 5 / 3
+    fallen = 1 + first**3 + 3 * first**2 * (2 - first) + 5 * (2 - first) ** 2
+    np.testing.assert_allclose(column(found, "bob.position").values[-1], [0, -fallen], atol=1e-12)
+
+
+def test_a_string_that_is_reeled_in_jerks_its_weight() -> None:
+    """Loose by 0.3 m, and wound in at 1 m/s from -1.3 m: it meets the falling weight where 5 t^2 = 0.3 - t."""
+    found = solve_scene(read(winch("1.3 - t", restitution="1/2")), [0.0, 0.3])
+    time = (-1 + np.sqrt(1 + 20 * 0.3)) / 10
+    assert found.events[0].kind == "taut"
+    assert found.events[0].time == pytest.approx(time, abs=1e-13)
+    # They close at 1 + 10 t, and leave each other at half of that.
+    assert found.events[0].impulses["normal"] == pytest.approx(2 * 1.5 * (1 + 10 * time), abs=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("drive", "more", "rule"),
+    [
+        ("0.9 - t", {}, "be at least 1 m"),
+        ("1 + bob.y", {}, "known names"),
+        ("1", {"length": 1}, "left out beside length"),
+        ("t", {}, "greater than 0 m at the start"),
+        ("2 - t", {"through": ["bob", [0, 0], [1, 0]], "friction": 0.2}, "left out beside friction"),
+    ],
+)
+def test_strings_that_cannot_be_driven_so_are_refused(drive: str, more: dict[str, Any], rule: str) -> None:
+    with pytest.raises(InvalidParameter, match=rule) as refused:
+        solve_scene(read(winch(drive, **more)), [0.0, 1.0])
+    assert refused.value.path == ("connections", 0, "drive")

@@ -79,14 +79,64 @@ def test_a_damper_between_two_wheels_brings_them_together() -> None:
     np.testing.assert_allclose(rates(columns, "two"), 1 - np.exp(-TIMES), atol=1e-13)
 
 
+def test_a_motor_turns_a_wheel_by_an_angle_through_whole_turns() -> None:
+    """The angle 5 t^2 with a moment of inertia of 3: 20 rad at 2 s, the torque 30, and the work 30 times the angle."""
+    motor = {"kind": "motor", "name": "motor", "a": "wheel", "drive": "5*t^2"}
+    columns = solved({"wheel": wheel(3)}, pin("wheel", [0, 0, 0]), motor)
+    np.testing.assert_allclose(rates(columns, "wheel"), 10 * TIMES, atol=1e-12)
+    np.testing.assert_allclose(columns["motor.torque"], 30, rtol=1e-12)
+    np.testing.assert_allclose(columns["motor.work"], 150 * TIMES**2, atol=1e-10)
+
+
+def test_a_torsion_spring_winds_a_wheel_through_whole_turns() -> None:
+    """12 N m/rad on 3 kg m^2 from rest, 20 rad from where it is unstretched: 20 (1 - cos 2t)."""
+    spring = {"kind": "torsion-spring", "name": "spring", "a": "wheel", "stiffness": 12, "rest_angle": 20}
+    columns = solved({"wheel": wheel(3)}, pin("wheel", [0, 0, 0]), spring)
+    np.testing.assert_allclose(rates(columns, "wheel"), 40 * np.sin(2 * TIMES), atol=1e-12)
+    np.testing.assert_allclose(columns["spring.torque"], 240 * np.cos(2 * TIMES), atol=1e-11)
+
+
+def test_a_spring_between_wheels_turns_them_against_each_other() -> None:
+    """Of 1 and 3 kg m^2 with 3 N m/rad the relative turn swings with sqrt(3 (1 + 1/3)) = 2 rad/s."""
+    bodies = {"one": wheel(3), "two": wheel(1, angular_velocity=["1/3", "2/3", "2/3"])}
+    spring = {"kind": "torsion-spring", "name": "spring", "a": "one", "b": "two", "stiffness": 3}
+    columns = solved(bodies, pin("one", [0, 0, 0]), pin("two", "one"), spring)
+    relative = rates(columns, "two") - rates(columns, "one")
+    np.testing.assert_allclose(relative, np.cos(2 * TIMES), atol=1e-13)
+    np.testing.assert_allclose(columns["spring.torque"], 3 * np.sin(2 * TIMES) / 2, atol=1e-12)
+
+
+def test_a_damper_by_a_formula_slows_a_hinge() -> None:
+    """A moment of inertia of 2 and 4 w^3: 1/w^2 grows by 4 t."""
+    damper = {"kind": "damper", "name": "damper", "a": "wheel", "measure": "turn", "law": "4*rate^3"}
+    spin = {"angular_velocity": ["1/3", "2/3", "2/3"]}
+    columns = solved({"wheel": wheel(2, **spin)}, pin("wheel", [0, 0, 0]), damper)
+    np.testing.assert_allclose(rates(columns, "wheel"), 1 / np.sqrt(1 + 4 * TIMES), atol=1e-13)
+
+
+def test_a_stop_turns_a_wheel_back() -> None:
+    """At 3 rad/s it meets 7 rad, more than a turn, after 7/3 s, and leaves at half of the rate."""
+    stop = {"kind": "contact", "name": "stop", "a": "wheel", "measure": "turn", "at_most": 7, "restitution": "1/2"}
+    bodies = {"wheel": wheel(2, angular_velocity=[1, 2, 2])}
+    scene = scene_from({"bodies": bodies, "connections": [pin("wheel", [0, 0, 0]), stop]})
+    found = solve_scene(scene, [0.0, 3.0])
+    assert [event.kind for event in found.events] == ["stop"]
+    assert found.events[0].time == pytest.approx(7 / 3, abs=1e-13)
+    assert found.events[0].impulses["normal"] == pytest.approx(2 * 4.5, abs=1e-12)
+    assert found.trajectory is not None
+    spin = found.trajectory.columns["wheel.angular_velocity"].values[1]
+    np.testing.assert_allclose(spin, [-1 / 2, -1, -1], atol=1e-13)
+
+
 @pytest.mark.parametrize(
     ("connection", "pointer", "rule"),
     [
-        ({"kind": "motor", "a": "wheel", "drive": "t"}, "drive", "left out in space"),
-        ({"kind": "motor", "a": "other", "rate": 1}, "a", "joined to b by a pin with an axis"),
+        ({"kind": "motor", "a": "wheel", "drive": "1 + t"}, "drive", "be 0.* rad at the start"),
+        ({"kind": "motor", "a": "other", "rate": 1}, "a", "joined to b by a pin, cylindrical joint or screw"),
         ({"kind": "motor", "a": "point", "rate": 1}, "a", "has moments"),
-        ({"kind": "damper", "a": "wheel", "measure": "turn", "law": "rate^3"}, "law", "a coefficient"),
-        ({"kind": "torsion-spring", "a": "wheel", "stiffness": 1}, "kind", "another one in space"),
+        ({"kind": "damper", "a": "wheel", "measure": "turn", "law": "angle^3"}, "law", "known names"),
+        ({"kind": "torsion-spring", "a": "other", "stiffness": 1}, "a", "joined to b by a pin"),
+        ({"kind": "contact", "a": "other", "measure": "turn", "at_most": 1}, "a", "joined to b by a pin"),
     ],
 )
 def test_what_has_no_turn_is_refused(connection: dict[str, Any], pointer: str, rule: str) -> None:

@@ -51,10 +51,15 @@ def turned_by_time(draw: Draw) -> Unit:
 
 
 def winched(draw: Draw) -> Unit:
-    """Return a load on a rod whose length is a formula of time, that swings, or is pushed along a rail."""
+    """Return a load on a rod or string whose length is a formula of time, that swings, or is pushed along a rail."""
     p, by = draw.name("load"), draw.one(("1 + sin(2*t)/5", "1 - t/4", "1 + t^2/2", "sqrt(1 + t)"))
     c, s, _ = draw.direction()
     body: Json = {"mass": draw.mass(), "at": draw.at(s, f"-({c})")}
+    if draw.chance(0.4):
+        string: Json = {"kind": "string", "name": draw.name("winch"), "through": [p, draw.at(0, 0)], "drive": by}
+        if draw.chance(0.6):
+            string["restitution"] = draw.one((0, 0.5))
+        return Unit({p: body}, [string], [p])
     rod = {"kind": "rod", "name": draw.name("winch"), "a": p, "b": draw.at(0, 0), "drive": by}
     if draw.chance(0.4):
         q = draw.name("bob")
