@@ -109,7 +109,7 @@ def evaluated(poly: Poly, at: Sequence[Ball] | Mapping[int, Ball]) -> Ball:
     """Return the value of a polynomial at given coordinates."""
     total = ZERO
     for key, value in poly.items():
-        if len(key) == 0:
+        if not key:
             total = total + value
         elif len(key) == 1:
             total = total + value * at[key[0]]
@@ -131,14 +131,14 @@ def size(poly: Poly, at: Sequence[Ball]) -> Ball:
 
 def degree(poly: Poly) -> int:
     """Return the degree, -1 of the zero polynomial."""
-    return max((len(key) for key in poly), default=-1)
+    return max(map(len, poly), default=-1)
 
 
 def substituted(poly: Poly, expressions: Sequence[Poly]) -> Poly:
     """Return a polynomial with every coordinate replaced by an affine expression."""
     total: Poly = {}
     for key, value in poly.items():
-        if len(key) == 0:
+        if not key:
             add_term(total, (), value)
         elif len(key) == 1:
             for a, x in expressions[key[0]].items():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from decimal import Decimal
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
@@ -86,8 +87,10 @@ class Reader:
     """
 
     def __init__(self, scene: Scene, instead: Mapping[Path, float] | None = None) -> None:
-        self.scene, exact = scene, Numerals.of({}, "doubles")
-        others = {path: exact.number(value, path) for path, value in (instead or {}).items()}
+        self.scene, others = scene, {}
+        if instead:
+            exact = Numerals.of({}, "doubles")
+            others = {path: exact.number(value, path) for path, value in instead.items()}
         self.numerals = Numerals.of(scene.let, scene.numbers, instead=others)
         self.dimension = _dimension(scene)
         self.gravity = self.vector((0,) * self.dimension if scene.gravity is None else scene.gravity, ("gravity",))
@@ -97,7 +100,7 @@ class Reader:
     def number(self, value: object, path: Path) -> float:
         """Return a number as the nearest double."""
         # The double that was sent is the one nearest to its decimal.
-        if isinstance(value, (int, float)) and not isinstance(value, bool) and path not in self.numerals.instead:
+        if isinstance(value, (float, int, Decimal)) and path not in self.numerals.instead:
             return float(value)
         return float(self.numerals.number(value, path))
 

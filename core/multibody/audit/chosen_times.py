@@ -53,16 +53,14 @@ def quickness(description: Description, placement: Placement, speed: float, spin
     speed, spin : float
         Largest components of velocities and spins (m/s, rad/s).
     """
-    found, masses = spin, {name: body.mass for name, body in description.bodies.items() if body.mass > 0.0}
+    found, masses = spin, description.masses
     for body in description.bodies.values():
         if body.angular_velocity is not None:
             found = max(found, float(np.max(np.abs(body.angular_velocity))))
-    least = min(masses.values(), default=0.0)
-    lengths = [connection.reach for connection in description.connections if connection.reach > 0.0]
-    if not lengths:
-        lengths = [max(float(np.abs(pose.position).max()) for pose in placement.values())]
-    if min(lengths) > 0.0:
-        length = min(lengths)
+    least, length = min(masses.values(), default=0.0), description.shortest
+    if length is None:
+        length = max(float(np.abs(pose.position).max()) for pose in placement.values())
+    if length > 0.0:
         found = max(found, speed / length, sqrt(hypot(*description.gravity) / length))
     for connection in description.connections:
         found = max(found, connection.quickness(placement, masses, least))

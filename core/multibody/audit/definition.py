@@ -7,7 +7,7 @@ power of all forces is that of the rates of momentum and spin in every virtual m
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, is_dataclass
 from functools import cached_property
 from typing import ClassVar, Protocol
@@ -60,7 +60,7 @@ class Definition:
     @cached_property
     def arm(self) -> float:
         """Largest offset of its places from centres of mass, or component of a place of the ground (m)."""
-        return max([abs(x) for place in self.places() for x in place.offset], default=0.0)
+        return max([abs(x) for place in self.places for x in place.offset], default=0.0)
 
     @property
     def rolls(self) -> bool:
@@ -189,7 +189,7 @@ class Definition:
     @property
     def driven(self) -> float:
         """Speed or rate that it prescribes (m/s, rad/s)."""
-        return max((place.quickness or 0.0 for place in self.places()), default=0.0)
+        return max((place.quickness or 0.0 for place in self.places), default=0.0)
 
     @property
     def drives(self) -> bool:
@@ -198,11 +198,12 @@ class Definition:
 
     def works(self) -> bool:
         """Return whether it takes or brings energy beside its potential: it does where a place is moved."""
-        return any(place.quickness is not None for place in self.places())
+        return any(place.quickness is not None for place in self.places)
 
-    def places(self) -> Iterator[Place]:
-        """Yield the places that it names."""
-        yield from _places(self)
+    @cached_property
+    def places(self) -> tuple[Place, ...]:
+        """The places that it names."""
+        return tuple(_places(tuple(vars(self).values())))
 
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """Return the measures that stay zero, in m or rad, by a name each; of several numbers, the last axis is theirs.
@@ -277,17 +278,14 @@ class Definition:
         return np.zeros(())
 
 
-def _places(value: object) -> Iterator[Place]:
-    if isinstance(value, (float, str)) or value is None:
-        return
-    if isinstance(value, Place):
-        yield value
-    elif isinstance(value, tuple):
-        for entry in value:
-            yield from _places(entry)
-    elif is_dataclass(value):
-        for own in vars(value).values():
-            yield from _places(own)
+def _places(values: Iterable[object]) -> Iterator[Place]:
+    for value in values:
+        if isinstance(value, Place):
+            yield value
+        elif isinstance(value, tuple):
+            yield from _places(value)
+        elif is_dataclass(value):
+            yield from _places(vars(value).values())
 
 
 @dataclass(frozen=True)

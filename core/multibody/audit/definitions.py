@@ -70,6 +70,16 @@ class Description:
         """The same, or the largest size of a connection: what a place is known beside (m)."""
         return max(self.places, *(connection.reach + connection.arm for connection in self.connections), 0.0)
 
+    @cached_property
+    def masses(self) -> dict[str, float]:
+        """Masses of the bodies that have any (kg)."""
+        return {name: body.mass for name, body in self.bodies.items() if body.mass > 0.0}
+
+    @cached_property
+    def shortest(self) -> float | None:
+        """Least length that a connection has by itself (m), None where none has any."""
+        return min((connection.reach for connection in self.connections if connection.reach > 0.0), default=None)
+
     @property
     def impulsive(self) -> Description:
         """What is left of it in no time: bodies and connections, without gravity and what acts by a law alone."""

@@ -51,8 +51,13 @@ class Pose(NamedTuple):
 
     def at(self, rows: Numbers | slice | None) -> Pose:
         """Return some samples of it; for None, itself as one sample."""
-        rotation, turn, time = (None if x is None else x[rows] for x in self[1:])
-        return Pose(self.position[rows], rotation, turn, time)
+        position, rotation, turn, time = self
+        return Pose(
+            position[rows],
+            None if rotation is None else rotation[rows],
+            None if turn is None else turn[rows],
+            None if time is None else time[rows],
+        )
 
 
 class Twist(NamedTuple):

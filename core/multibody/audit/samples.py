@@ -61,10 +61,9 @@ class Samples:
         """Return some of the samples, by a mask, their numbers or a slice."""
         placement = {name: pose.at(rows) for name, pose in self.placement.items()}
         motion = {name: twist.at(rows) for name, twist in self.motion.items()}
-        forces, errors, force_errors = (
-            {name: values[rows] for name, values in each.items()}
-            for each in (self.forces, self.errors, self.force_errors)
-        )
+        forces = {name: values[rows] for name, values in self.forces.items()}
+        errors = {name: values[rows] for name, values in self.errors.items()}
+        force_errors = {name: values[rows] for name, values in self.force_errors.items()}
         return Samples(self.times[rows], placement, motion, forces, errors, force_errors, self.placed)
 
     def with_first_forces(self, given: Mapping[str, Numbers]) -> Samples:
@@ -299,7 +298,7 @@ def axis_of_top(body: RigidBody, description: Description) -> int:
     """Return the body axis about which a body is symmetric, and on which its places are that connections use."""
     assert body.inertia is not None, "a top has moments"
     moments = np.diag(body.inertia)
-    used = {place.offset for one in description.connections for place in one.places() if place.body == body.name}
+    used = {place.offset for one in description.connections for place in one.places if place.body == body.name}
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
         if moments[i] == moments[j] and all(offset[i] == 0.0 == offset[j] for offset in used):

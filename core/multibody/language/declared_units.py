@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import cache
 from typing import Any, Protocol, get_args, get_type_hints, runtime_checkable
 
 from core.errors import InvalidParameter, Path
 from core.multibody.language.units import unit_of
+
+PLAIN = frozenset({type(None), int, float, Decimal, str})
+"""Types of what is written without a unit, which is then that of its field."""
 
 
 @runtime_checkable
@@ -102,8 +106,11 @@ def check_units(part: Any, path: Path) -> None:
     """
     measure = getattr(part, "measure", None)
     for name, declared in declared_units(type(part)).items():  # type: ignore[arg-type]
+        value = getattr(part, name)
+        if type(value) in PLAIN or (type(value) in (list, tuple) and PLAIN.issuperset(map(type, value))):
+            continue
         # A word of Python's has a sign behind it as the name of a field.
-        declared.check(getattr(part, name), (*path, name.rstrip("_")), measure)
+        declared.check(value, (*path, name.rstrip("_")), measure)
 
 
 @cache

@@ -159,25 +159,29 @@ class Numerals:
     def _written(self, value: object, path: Path) -> Ball:
         if isinstance(value, str):
             return self._formula(value, path)
-        if isinstance(value, Mapping):
-            if set(value) == {"value", "unit"}:
-                return self._in_unit(value, path)
-            if set(value) != {"degrees"}:
-                raise InvalidParameter(
-                    path, 'be a number, a formula, {"degrees": number} or {"value": number, "unit": text}'
-                )
-            inner = value["degrees"]
-            if isinstance(inner, Mapping):
-                raise InvalidParameter((*path, "degrees"), "be a number or a formula")
-            return self.number(inner, (*path, "degrees")) * arb.pi() / 180
+        if not isinstance(value, (float, Decimal)) and isinstance(value, Mapping):
+            return self._of_object(value, path)
         plain = isinstance(value, float) and isfinite(value) and not self.doubles
         found = _decimal(repr(value)) if plain else _exact(value, path)
-        if found != 0:
+        if not is_zero(found):
             self.read[path] = found
         return found + found * self.share if path in self.moved else found
 
-    def _in_unit(self, value: Mapping[str, object], path: Path) -> Ball:
+    def _of_object(self, value: Mapping[str, object], path: Path) -> Ball:
         """Return a number that has a unit."""
+        if set(value) == {"value", "unit"}:
+            return self._in_unit(value, path)
+        if set(value) != {"degrees"}:
+            raise InvalidParameter(
+                path, 'be a number, a formula, {"degrees": number} or {"value": number, "unit": text}'
+            )
+        inner = value["degrees"]
+        if isinstance(inner, Mapping):
+            raise InvalidParameter((*path, "degrees"), "be a number or a formula")
+        return self.number(inner, (*path, "degrees")) * arb.pi() / 180
+
+    def _in_unit(self, value: Mapping[str, object], path: Path) -> Ball:
+        """Return a number in the unit that is written beside it."""
         unit = unit_of(value["unit"], (*path, "unit"))
         if isinstance(value["value"], Mapping):
             raise InvalidParameter((*path, "value"), "be a number or a formula")
@@ -220,7 +224,7 @@ class Numerals:
             raise InvalidParameter(path, f"be a list of {dimension} numbers")
         if len(value) != dimension:
             raise InvalidParameter(path, f"have {dimension} entries, not {len(value)}")
-        return tuple(self.number(entry, (*path, i)) for i, entry in enumerate(value))
+        return tuple([self.number(entry, (*path, i)) for i, entry in enumerate(value)])
 
 
 def _is_of_motion(text: str, numerals: Numerals, let: Mapping[str, object]) -> bool:
@@ -273,7 +277,7 @@ def _decimal(text: str) -> Ball:
     """Return the rational number of decimal digits, in one rounding."""
     digits, _, exponent = text.lower().partition("e")
     whole, _, part = digits.partition(".")
-    behind = int(exponent or 0) - len(part)
+    behind = (int(exponent) if exponent else 0) - len(part)
     number = int(whole + part)
     return arb(number * 10**behind) if behind >= 0 else arb(fmpq(number, 10**-behind))
 

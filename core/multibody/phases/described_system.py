@@ -135,14 +135,18 @@ class DescribedSystem:
     def _own(self, times: Floats, accuracy: float, how: How) -> dict[str, Column]:
         """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""
         columns = self.columns.with_sizes(times)
-        if worst(columns) > accuracy and self.columns.numerical and accuracy >= FINEST:
+        lost = worst(columns) > accuracy
+        if lost and self.columns.numerical and accuracy >= FINEST:
             self.columns = replace(self.columns, finer=True)
             columns = self.columns.with_sizes(times)
-        if worst(columns) > accuracy and (accuracy < FINEST or self.columns.are_known(times, accuracy)):
+            lost = worst(columns) > accuracy
+        if lost and (accuracy < FINEST or self.columns.are_known(times, accuracy)):
             self.columns = replace(self.columns, finer=True)
             columns = replace(self.columns, rounding=NEAREST).with_sizes(times)
-        columns |= self._sums(times, how)
-        lost = worst(columns) > accuracy
+            lost = worst(columns) > accuracy
+        sums = self._sums(times, how)
+        columns |= sums
+        lost = worst(columns) > accuracy if sums else lost
         require_reached(columns, accuracy, before=self.columns.reached_until(times, accuracy) if lost else None)
         return columns
 

@@ -105,6 +105,8 @@ class ColumnsInPhases:
         Rates are measured by the largest of the motion, also where all samples are at rest.
         """
         found, fastest = {}, self.motion.fastest
+        if len(pieces) == 1 and not fastest:
+            return pieces[0][1]
         for name, first in pieces[0][1].items():
             if not all(name in own for _, own in pieces):
                 continue

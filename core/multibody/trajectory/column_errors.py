@@ -54,7 +54,8 @@ def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
     """
     largest, unknown = _sizes(columns)
     for column in columns.values():
-        largest[column.unit] = max(largest[column.unit], column.scale or 0.0)
+        if column.scale:
+            largest[column.unit] = max(largest[column.unit], column.scale)
     away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
     for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
         if largest.get(unit, 0.0) <= max(unknown.get(unit, 0.0), FLOOR * scale):
@@ -68,11 +69,11 @@ def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
 
 def _sizes(columns: Mapping[str, Column]) -> tuple[dict[str, float], dict[str, float]]:
     """Return the largest value and the largest error among the columns of each unit."""
-    largest: dict[str, float] = {}
-    unknown: dict[str, float] = {}
+    alike: dict[str, list[Column]] = {}
     for column in columns.values():
-        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest)
-        unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
+        alike.setdefault(column.unit, []).append(column)
+    largest = {unit: max([0.0, *[column.largest for column in own]]) for unit, own in alike.items()}
+    unknown = {unit: max([0.0, *[column.error for column in own]]) for unit, own in alike.items()}
     return largest, unknown
 
 
