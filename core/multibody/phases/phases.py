@@ -35,11 +35,10 @@ from core.multibody.phases.passing_touch import without_passing_touch
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
-from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness, stopped_share
+from core.multibody.phases.slow_bounces import NEAR, SLOW, may_strike, rate_share, slowness, stopped_share, time_left
 from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import Tracks
 from core.multibody.phases.turning_slip import begins_at_once, turns
-from core.multibody.search.bands import FLOOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
 from core.multibody.table.facing import facing, is_on_a_corner
@@ -170,10 +169,11 @@ class _Run:
                 if not tried:
                     self._come_to_rest()
                 return True
-            unilateral, settling = self.unilateral, list[int]()
+            unilateral, settling, left = self.unilateral, list[int](), 0.0
             for limit in (SLOW, NEAR):
                 share = slowness(self.unilateral, hit, self.motion.events, tracks, limit)
                 if share > 0.0:
+                    left = time_left(unilateral, hit, self.motion.phases[-1], tracks)
                     unilateral, settling = self._settling(share, limit)
                     q, v = tracks.wide()
                 outcome = impact(table, unilateral, self.touching, q, v, simultaneous=self.base.scene.simultaneous)
@@ -196,7 +196,7 @@ class _Run:
             self._record(hit, outcome.widened(alike))
             rates = [found.v for found in alike or [outcome]]
             tracks.each = [replace(track, v=v) for track, v in zip(tracks.each, rates, strict=True)]
-            self._settled(settling)
+            self._settled(settling, left)
         self._stop(Problem("no-progress", "impacts follow one another without end", ()))
         return False
 
@@ -206,19 +206,29 @@ class _Run:
         The state is wide enough then for whatever slip the last of their bounces may have left. Without a slip nothing
         but the unknown rate itself is left open, which the contact holds.
         """
-        beyond = [i for i in self.touching if self.states[i] is State.OPEN] if not self.tracks.exact else []
-        share = stopped_share(self.unilateral, beyond, self.motion.events, self.tracks)
+        if self.tracks.exact:
+            return
+        # The end of bounces that are summed up is known.
+        ended = self.motion.phases[-1].settles
+        beyond = [i for i in self.touching if self.states[i] is State.OPEN and self.unilateral[i].name != ended]
+        settling = may_strike(self.unilateral, beyond, self.motion.events, self.tracks)
+        if not settling:
+            return
+        left = time_left(self.unilateral, settling, self.motion.phases[-1], self.tracks)
+        share = stopped_share(self.unilateral, settling, self.tracks)
         if share > 0.0:
-            self._settled(self._settling(share, math.inf)[1])
+            settling = self._settling(share, math.inf)[1]
+        self._settled(settling, left)
 
-    def _settled(self, settling: Sequence[int]) -> None:
-        """Add the events of bounces that have come to rest."""
+    def _settled(self, settling: Sequence[int], left: float) -> None:
+        """Add the events of bounces that have come to rest, which would have gone on for so long (s) at most."""
         for i in settling:
             settled = self.unilateral[i]
             # The end of bounces that are not listed is an event already.
             listed = settled.name == self.motion.phases[-1].settles
             if self.states[i] is State.OPEN and settled.restitution > 0 and not listed:
-                self._event("settle", settled.name)
+                event = self._event("settle", settled.name)
+                self.motion.events[-1] = replace(event, error=event.error + left)
 
     def _face(self) -> Problem | None:
         """Choose what the corners of shapes may meet from the present state on; what leaves an edge touches no more."""
@@ -247,10 +257,9 @@ class _Run:
         The tracks are moved apart by what that omits: a share of the largest rates.
         """
         table, tracks = self.base.measures.table, self.tracks
-        tracks.floor = max(tracks.floor, share)
-        tracks.part(self.motion.phases[-1].still, share)
-        tracks.delay(share * tracks.own_time())
-        tracks.lose(*([share * x for x in scales] for scales in tracks.scales()))
+        tracks.left_out = max(tracks.left_out, share)
+        tracks.part(self.motion.phases[-1].still, share, share)
+        tracks.lose(*([share * x for x in sizes] for sizes in tracks.motion()))
         q, v = tracks.wide()
         # What is within that of another contact touches it.
         near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
@@ -412,7 +421,7 @@ class _Run:
         if wide and not self.last:
             raise _TooWide
         if wide or not tracks.exact:
-            tracks.part(phase.still, phase.share, FLOOR)
+            tracks.part(phase.still, phase.share)
         phase.end = tracks.time
         # Where a facet ends, or a height above an edge beyond its ends, another is met, and not necessarily touched.
         facets = first.watch.one.facets

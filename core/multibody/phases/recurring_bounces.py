@@ -162,13 +162,13 @@ def _tail(
     track = phase.tracks[k]
     one = along_slip(unilateral, [i], track.q, track.v)[i]
     opening = gap_rate(one, track.q, track.v)
-    closing = -_acceleration(table, Row.held(one.name, one.gap), acceleration)
+    closing = -acceleration_along(table, Row.held(one.name, one.gap), acceleration)
     if not opening > 0 or not closing > 0:
         return None
     found = responses(table, [one], [0])
     ratio: Ball | None = ZERO
     if one.slip is not None:
-        gain = _acceleration(table, Row(one.name, None, one.slip), acceleration)
+        gain = acceleration_along(table, Row(one.name, None, one.slip), acceleration)
         ratio = _ratio(one, found, opening, closing, gain, slip_rate(one, track.q, track.v))
         if ratio is None:
             return None
@@ -185,7 +185,7 @@ def _tail(
     return Accumulation(track.q, track.v, acceleration, push, yields, opening, closing, one.restitution)
 
 
-def _acceleration(table: Table, row: Row, acceleration: Sequence[Ball]) -> Ball:
+def acceleration_along(table: Table, row: Row, acceleration: Sequence[Ball]) -> Ball:
     """Return the acceleration along a row, with what its change of direction adds."""
     return rate_along(row.line(table.q), acceleration) - table.convective(row)
 
@@ -194,7 +194,7 @@ def _straight(
     one: Unilateral, found: Responses, table: Table, q: list[Ball], v: list[Ball], acceleration: Sequence[Ball]
 ) -> bool:
     """Return whether the slip of bounces in space stays along one direction."""
-    gain = _acceleration(table, Row(one.name, None, one.across or {}), acceleration)
+    gain = acceleration_along(table, Row(one.name, None, one.across or {}), acceleration)
     beside = (across_rate(one, q, v), gain, found.matrix[2][0], found.matrix[2][1])
     return all(is_zero(x) for x in beside)
 

@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 from core.multibody.algebra.polynomials import is_zero
 from core.multibody.contacts.contact_responses import across_rate, gap_rate, slip_rate
-from core.multibody.phases.recurring_bounces import LISTED
+from core.multibody.equations.dynamics import accelerations
+from core.multibody.phases.phase import Phase
+from core.multibody.phases.recurring_bounces import LISTED, acceleration_along
 from core.multibody.phases.tracks import Tracks
 from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.table import Row
 from core.systems.trajectory import MotionEvent
 
 SLOW = 2.0**-42
@@ -41,12 +45,10 @@ def slowness(
     return _left(share, unilateral, hit) if share < limit else 0.0
 
 
-def stopped_share(
+def may_strike(
     unilateral: Sequence[Unilateral], touching: Sequence[int], events: Sequence[MotionEvent], tracks: Tracks
-) -> float:
-    """Return how much of a slip bounces may have stopped of which it is not known whether they strike, as a share.
-
-    Of the largest rate; zero where nothing slips as far as is known, or nothing bounces so.
+) -> list[int]:
+    """Return which measures have bounced often, and now touch without a rate that is known: they may strike again.
 
     Parameters
     ----------
@@ -54,15 +56,48 @@ def stopped_share(
         Measures that touch now and did not before, and do not approach as far as is known.
     """
     q, v = tracks.wide()
+    slow = [i for i in touching if is_zero(gap_rate(unilateral[i], q, v))]
+    return [i for i in slow if unilateral[i].restitution > 0 and _bounce_often(unilateral, [i], events)]
+
+
+def stopped_share(unilateral: Sequence[Unilateral], settling: Sequence[int], tracks: Tracks) -> float:
+    """Return how much of a slip measures that may strike again may stop then, as a share of the largest rate.
+
+    Zero where nothing slips as far as is known.
+    """
+    q, v = tracks.wide()
     found = 0.0
-    for i in touching:
+    for i in settling:
         one, most = unilateral[i], _fastest(unilateral[i], tracks)
-        rate, slips = gap_rate(one, q, v), [slip_rate(one, q, v), across_rate(one, q, v)]
-        if most > 0.0 and is_zero(rate) and not all(map(is_zero, slips)) and _bounce_often(unilateral, [i], events):
+        slips = [slip_rate(one, q, v), across_rate(one, q, v)]
+        if most > 0.0 and not all(map(is_zero, slips)):
             slip = sum(float(x.abs_upper()) for x in slips) / most
             # What slips faster than that goes on, but for less than is known of it.
-            if slip <= _left(float(rate.abs_upper()) / most, unilateral, [i]):
+            if slip <= _left(float(gap_rate(one, q, v).abs_upper()) / most, unilateral, [i]):
                 found = max(found, slip)
+    return found
+
+
+def time_left(unilateral: Sequence[Unilateral], settling: Sequence[int], phase: Phase, tracks: Tracks) -> float:
+    """Return how long (s) bounces at most would have gone on that are left out, as far as accelerations tell.
+
+    Parameters
+    ----------
+    phase : Phase
+        The last one, in which they were open.
+    """
+    q, v = tracks.wide()
+    # As the phase goes on: what has just let go may have had no acceleration at its start.
+    table = replace(phase.tables[0].table, q=tracks.first.q, v=tracks.first.v)
+    found, acceleration = 0.0, accelerations(table)[0]
+    for i in settling:
+        one = unilateral[i]
+        closing = -acceleration_along(table, Row.held(one.name, one.gap), acceleration)
+        rate, bounciness = float(gap_rate(one, q, v).abs_upper()), float(one.restitution)
+        if rate > 0.0 and bounciness < 1.0:
+            # What is pressed on by other contacts alone has no acceleration of its own.
+            arc = 2.0 * rate / float(closing.mid()) if closing > 0 else rate / max(_fastest(one, tracks), rate)
+            found = max(found, arc / (1.0 - bounciness))
     return found
 
 

@@ -164,6 +164,8 @@ class Sums:
 
         nodes = partial(self._nodes, number, piece, parts)
         values, errors = summed(integrand, nodes, partial(piece.period, parts), times)
+        if piece.phase.unknown is not None:
+            errors += np.abs(times) * _unknown(piece, function)
         if len(self.pieces) > 1:
             # An event that comes later or earlier changes a sum by as much as the summands on either side.
             ends = np.abs(integrand(np.array([0.0, piece.length]))[0])
@@ -256,6 +258,18 @@ class Sums:
         ends = alone.columns(np.array([piece.length]), self.how, "energy-in-time")["energy.kinetic"]
         starts = following.columns(np.zeros(1), self.how, "energy-in-time")["energy.kinetic"]
         one.add(float(starts.values[0] - ends.values[0]), starts.error + ends.error)
+
+
+def _unknown(piece: Stretch, function: Power) -> float:
+    """Return by how much a summand is wrong for what both tracks have left out, to first order."""
+    states = piece.states(piece.length * np.array([0.0, 0.5, 1.0]))
+    here, total = function((states.q, states.v))[0], np.zeros(3)
+    for which, sizes in enumerate((states.q_error, states.v_error)):
+        for i in np.flatnonzero(sizes.any(axis=0)):
+            state = [states.q.copy(), states.v.copy()]
+            state[which][:, i, 0] += sizes[:, i]
+            total += np.abs(function((state[0], state[1]))[0] - here)
+    return float(total.max())
 
 
 def _sized(function: Callable[[State], Floats]) -> Power:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from flint import arb
 
@@ -63,8 +63,8 @@ class Tracks:
     Attributes
     ----------
     each : list of Track
-    floor : float
-        Share of the largest coordinate of its unit that the state is wrong by at least.
+    left_out : float
+        Share of the largest distance and rate of its unit by which what was left out changes the state at most.
     lost : two lists of float
         By how much coordinates and rates are wrong on all tracks alike: what was taken to be zero, or left out.
     """
@@ -72,9 +72,11 @@ class Tracks:
     def __init__(self, units: Sequence[str], q: Sequence[Ball], v: Sequence[Ball]) -> None:
         self.units = units
         self.each = [Track(ZERO, list(q), list(v))]
-        self.floor = FLOOR
+        self.left_out = 0.0
         self.lost = [0.0] * len(q), [0.0] * len(q)
         self._largest: tuple[dict[str, float], dict[str, float]] = ({}, {})
+        self._start = list(q)
+        self._farthest: dict[str, float] = {}
         self.scales()
 
     @property
@@ -97,15 +99,19 @@ class Tracks:
         first = self.first
         if self.exact:
             return first.q, first.v
-        q_scales, v_scales = self.scales()
         second = self.each[1]
-        return self._around(first.q, second.q, q_scales), self._around(first.v, second.v, v_scales)
-
-    def _around(self, first: Vector, second: Vector, scales: Sequence[float]) -> Vector:
-        return [
-            arb(x.mid(), SAFETY_FACTOR * float(abs(x - y).mid()) + self.floor * scale)
-            for x, y, scale in zip(first, second, scales, strict=True)
-        ]
+        found = []
+        for one, other, scales, sizes in zip(
+            (first.q, first.v), (second.q, second.v), self.scales(), self.motion(), strict=True
+        ):
+            least = [FLOOR * scale + self.left_out * size for scale, size in zip(scales, sizes, strict=True)]
+            found.append(
+                [
+                    arb(x.mid(), SAFETY_FACTOR * float(abs(x - y).mid()) + width)
+                    for x, y, width in zip(one, other, least, strict=True)
+                ]
+            )
+        return found[0], found[1]
 
     def scales(self) -> tuple[list[float], list[float]]:
         """Return the largest coordinate and rate so far of the unit of each."""
@@ -120,6 +126,13 @@ class Tracks:
         least = rate / place if place > 0.0 else 0.0
         turns = [unit in ("1", "rad") and x > 0.0 for unit, x in zip(self.units, rates, strict=True)]
         return places, [max(x, least) if turned else x for turned, x in zip(turns, rates, strict=True)]
+
+    def motion(self) -> tuple[list[float], list[float]]:
+        """Return the largest distance from the start and the largest rate so far of the unit of each coordinate.
+
+        What is left out of a motion is a share of these: where the origin is does not matter to it.
+        """
+        return [self._farthest.get(unit, 0.0) for unit in self.units], self.scales()[1]
 
     def fastest(self, unit: str) -> float:
         """Return the largest rate so far of a unit."""
@@ -143,6 +156,8 @@ class Tracks:
             rate = moved / time if time > 0.0 else 0.0
             for largest, x in zip(self._largest, (pull * time * time, max(pull * time, rate)), strict=True):
                 largest[unit] = max(largest.get(unit, 0.0), x)
+            away = abs(float((after[i] - self._start[i]).mid()))
+            self._farthest[unit] = max(self._farthest.get(unit, 0.0), away, moved, pull * time * time)
 
     def late(self) -> float:
         """Return what the present time is wrong by."""
@@ -175,7 +190,7 @@ class Tracks:
                 if abs(float(x)) <= NEGLIGIBLE_RATE * (own if unit in ("m", "s") else max(own, least)):
                     vector[i] = ZERO
 
-    def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float | None = None) -> None:
+    def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float = FLOOR) -> None:
         """Go on with two tracks, the second moved by a share of the largest, so that the growth of errors is seen.
 
         Parameters
@@ -183,26 +198,21 @@ class Tracks:
         still : sequence of bool
             Which coordinates are constants of the last phase on both: these remain the same.
         share, of_places : float
-            Of rates and, where that is another, of places.
+            Of the largest rates; of the largest distances, beside the rounding of places.
         """
         last = self.each[-1].bare()
         self.each = [self.first.bare(), last]
         q_scales, v_scales = self.scales()
-        q = _moved(self.first.q, last.q, q_scales, still, share if of_places is None else of_places)
-        v = _moved(self.first.v, last.v, v_scales, still, share)
+        away = [max(FLOOR * x, of_places * y) for x, y in zip(q_scales, self.motion()[0], strict=True)]
+        q = _moved(self.first.q, last.q, away, still)
+        v = _moved(self.first.v, last.v, [share * x for x in v_scales], still)
         self.each = [self.first, Track(last.time, q, v)]
 
-    def delay(self, time: float) -> None:
-        """Set the time of the second track apart from the first's, where both are wrong by as much."""
-        last = self.each[-1]
-        self.each = [self.first, replace(last, time=last.time + time)]
 
-
-def _moved(first: Vector, second: Vector, scales: Sequence[float], still: Sequence[bool], share: float) -> Vector:
-    """Return the second vector, as far from the first as a share of the scales at least, to either side in turn."""
+def _moved(first: Vector, second: Vector, away: Sequence[float], still: Sequence[bool]) -> Vector:
+    """Return the second vector, so far from the first at least, to either side in turn."""
     moved = []
-    for i, (x, y, scale) in enumerate(zip(first, second, scales, strict=True)):
-        least = share * scale
+    for i, (x, y, least) in enumerate(zip(first, second, away, strict=True)):
         if (still[i] and x == y) or abs(float(x - y)) >= least:
             moved.append(y)
         else:
