@@ -279,6 +279,7 @@ TESTED_IN |= {
 }
 TESTED_IN["core/fits/unknowns.py"] = "service/test_fits.py"
 TESTED_IN["core/assessment/typed_number.py"] = "core/assessment/test_typed_entry.py"
+TESTED_IN["core/assessment/typed_signs.py"] = "core/assessment/test_typed_entry.py"
 TESTED_IN["core/assessment/feedback/entry_fault.py"] = "core/assessment/test_typed_entry.py"
 TESTED_IN |= {
     f"core/find/{name}.py": "core/find/test_search.py"

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any, Literal
 
 import numpy as np
 
 from core.arrays import Floats
-from core.assessment.typed_entry import LONGEST_ENTRY, typed_entry
+from core.assessment.typed_entry import LONGEST_ENTRY, number_with_unit, typed_entry
 from core.assessment.typed_number import Locale
 from core.errors import InvalidParameter
-from core.formulas import LONGEST_FORMULA
+from core.formulas import LONGEST_FORMULA, names_in
 
 MOST_CLAIMS = 100
 """Figures in one submission."""
@@ -107,6 +108,22 @@ class Claim:
         if entry.get("times") is not None:
             return cls._of(_value(typed.value, "text"), typed.unit or unit, entry, "text")
         return cls(_value(typed.value, "text"), typed.unit or unit, formula=typed.formula, field="text")
+
+    def as_quantity(self, unit: str, names: Collection[str]) -> Claim:
+        """Return the claim with a number and its unit for a typed formula that is their product, such as 60/min.
+
+        Parameters
+        ----------
+        unit : str
+            Of the figure.
+        names : collection of str
+            Of the question's quantities, which come before units.
+        """
+        formula = self.formula or ""
+        if self.field != "text" or self.unit is not None or names_in(formula) & {*names}:
+            return self
+        found = number_with_unit(formula, unit)
+        return self if found is None else replace(self, value=found[0], unit=found[1], formula=None)
 
 
 def _text(entry: dict[str, Any], name: str, longest: int) -> str | None:

@@ -138,6 +138,8 @@ class Grader:
         path = steps_of(pointer)
         reference = self._reference(pointer, path, claim.times)
         # A word that was typed may be either.
+        if claim.formula is not None:
+            claim = claim.as_quantity(reference.unit, self._parameters)
         if claim.formula is not None and not (claim.value is not None and reference.form == "choice"):
             formula = self._read(claim, claim.formula, reference)
             # Without a name, and with the unit that the figure needs, it is a number.

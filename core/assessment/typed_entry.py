@@ -9,25 +9,19 @@ from typing import Any
 
 from core.assessment.feedback.entry_fault import EntryFault
 from core.assessment.feedback.languages import Sentence
+from core.assessment.formulas import Undefined, value_in_doubles
 from core.assessment.typed_number import DIGITS, WITH_COMMA, Locale, leading_number, plain_digits
+from core.assessment.typed_signs import with_plain_signs
 from core.assessment.unit_words import in_symbols
-from core.formulas import NAMES_OF_FUNCTIONS
+from core.assessment.units import factor
+from core.errors import InvalidParameter
+from core.formulas import NAMES_OF_FUNCTIONS, Formula
 
 LONGEST_ENTRY = 300
 """Characters: as long as a formula may be."""
 
-_SIGNS = str.maketrans(
-    {"−": "-", "–": "-", "—": "-", "π": "pi", "\u00ba": "°"}
-    | dict.fromkeys("\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f", " ")
-)
-"""Signs with other code points than those of formulas; the masculine ordinal is typed for the degree sign."""
 _OPERATORS = str.maketrans({"×": "*", "⋅": "*", "·": "*", "÷": "/", "√": "sqrt"})
 """Signs that mean something else in formulas only: a unit may have its dots."""
-_RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
-_NAMED = re.compile(
-    r"(?:(?:[^\W\d]\w*)?\s*[=≈~]\s*)?(?:(?:ca|circa|approx|aprox|env|environ|etwa)\b\.?\s*(?=[-+\d.,]))?", re.IGNORECASE
-)
-"""What stands before the answer itself: ``T = 6.28 s``, ``≈ 6.28 s``, ``ca. 6.28 s``."""
 _IN_FORMULA = re.compile(rf"(?<![\w.,]){DIGITS}")
 _FUNCTION = rf"(?:pi\b|(?:{'|'.join(NAMES_OF_FUNCTIONS)})\s*\()"
 """Pattern of what begins a factor of a formula, and no unit: ``min`` is a minute, and ``min(`` a function."""
@@ -36,13 +30,24 @@ _GOES_ON = re.compile(rf"[-+*/^(×⋅·÷√]|{_FUNCTION}|(?!1\s*/\s*[^\W\d])\d|
 """What follows a number that is the beginning of a formula; ``2.5 1/s`` has a unit, which has no sum."""
 _UNIT = re.compile(r"[\w°%µμΩ·*/^()²³⁻¹. -]*")
 _PRODUCT = str.maketrans({"⋅": "·", "×": "·"})
-_TWO_SIGNS = re.compile(r"[-+]{2}")
-"""Two signs together: ``2.5 +- 0.3`` is no difference, and ``--2`` nothing that anybody means."""
+_TWO_SIGNS = re.compile(r"[-+]{2}|(?:\+\s+-|-\s+\+)\s*[\d.,]")
+"""Two signs together: ``2.5 +- 0.3`` and ``2.5 + - 0.3`` are no differences, and ``--2`` nothing that anybody means."""
+_UNCLEAR_QUOTIENT = re.compile(rf"/\s*{DIGITS}(?={_FUNCTION}|√)")
+"""``1/2π`` may be π/2 or the reciprocal of 2π; ``1/2 π`` is half of π."""
 _SEPARATOR = re.compile(r"[;|]|,\s")
+_BARE_LIST = re.compile(r"[-+.\d].*,\s+[-+.,\d].*")
+"""Numbers with commas between them, without brackets."""
+_TIGHT_LIST = re.compile(r"[({<]([^(){}<>;|]*)[)}>]")
+_GROUPED = re.compile(r"(?<!\d)\d{1,3} \d{3}(?!\d)")
+_QUANTITY = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([*/])\s*([A-Za-zµ°Ω%][\w°µΩ%²³⁻¹*/^ .-]*)")
+_SECOND_NUMBER = re.compile(r"[^\W\d_]\.?\s+\d(?!\s*/)")
+"""Behind a unit: ``6 s 280 ms`` is no product."""
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("null", "none", "keine", "keiner", "aucun", "aucune", "ninguno", "ninguna")),
-    **dict.fromkeys(("true", "yes", "wahr", "ja", "vrai", "oui", "verdadero", "sí"), True),
-    **dict.fromkeys(("false", "no", "falsch", "nein", "faux", "non", "falso"), False),
+    **dict.fromkeys(
+        ("true", "yes", "wahr", "richtig", "ja", "vrai", "oui", "verdadero", "verdadera", "cierto", "sí"), True
+    ),
+    **dict.fromkeys(("false", "no", "falsch", "nein", "faux", "non", "falso", "falsa"), False),
 }
 
 
@@ -78,33 +83,55 @@ def typed_entry(text: str, locale: Locale | None = None) -> TypedEntry:
     EntryFault
         For an empty entry, and for one that can be read in two ways or in none.
     """
-    entry = re.sub(r"(?<=10)[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda raised: f"^{raised[0].translate(_RAISED)}", text)
-    entry = entry.translate(_SIGNS).strip()
-    if named := _NAMED.match(entry):
-        entry = entry[named.end() :]
+    entry = with_plain_signs(text, locale)
     if not entry:
         raise EntryFault((), "not be empty", sentence=Sentence("entry-empty"))
-    if entry.lower() in _WORDS:
-        return TypedEntry(_WORDS[entry.lower()])
-    if entry.startswith(("[", "{")) or ";" in entry or _is_list_in_parentheses(entry):
-        values, behind = _listed(entry, locale)
-        return TypedEntry(values, _symbols(behind, locale))
+    word = entry.lower().rstrip(".")
+    if word in _WORDS:
+        return TypedEntry(_WORDS[word])
+    if _is_list(entry, locale):
+        return TypedEntry(*_listed(entry, locale))
     number = leading_number(entry, locale)
     if number is not None:
         value, rest = number
         if not _GOES_ON.match(rest):
             return TypedEntry(value, _symbols(rest, locale))
-    if _TWO_SIGNS.search(entry):
+    if "=" in entry or _TWO_SIGNS.search(entry):
         raise _malformed()
     formula, unit = entry, ""
     split = _WITH_UNIT.fullmatch(entry)
     if split is not None and not re.search(r"[-+*/^(]\s*$", split[1]):
         formula, unit = split[1], split[2].strip()
+    if _UNCLEAR_QUOTIENT.search(formula):
+        rule = "have parentheses where a product stands behind a quotient"
+        raise EntryFault((), rule, remedy="write 1/(2*pi) or (1/2)*pi", sentence=Sentence("quotient-unclear"))
     formula = re.sub(r"√\s*([\d.,]+|[^\W\d]\w*)", r"sqrt(\1)", formula).translate(_OPERATORS)
     formula = re.sub(rf"(?<=\d)\s*(?={_FUNCTION})", "*", formula)
     formula = _IN_FORMULA.sub(lambda digits: plain_digits(digits[0], locale), formula)
-    word = entry if re.fullmatch(r"[A-Za-z][\w -]*", entry) else None
-    return TypedEntry(word, _symbols(unit, locale), formula)
+    choice = entry if re.fullmatch(r"[A-Za-z][\w -]*", entry) else None
+    return TypedEntry(choice, _symbols(unit, locale), formula)
+
+
+def number_with_unit(formula: str, unit: str) -> tuple[float, str] | None:
+    """Return the number and the unit of a typed formula that is their product, such as ``60/min`` or ``6.28*s``.
+
+    Parameters
+    ----------
+    formula : str
+        None of whose names is a quantity of the question.
+    unit : str
+        Of the figure; the other unit has to measure the same kind of quantity.
+    """
+    found = _QUANTITY.fullmatch(formula)
+    if found is None:
+        return None
+    number, sign, given = found.groups()
+    given = f"1/{given}" if sign == "/" else given
+    try:
+        factor(given, unit)
+        return float(number), given
+    except (EntryFault, ValueError):
+        return None
 
 
 def _symbols(unit: str, locale: Locale | None) -> str | None:
@@ -112,7 +139,7 @@ def _symbols(unit: str, locale: Locale | None) -> str | None:
     unit = unit.translate(_PRODUCT)
     if unit.startswith("[") and unit.endswith("]"):
         unit = unit[1:-1].strip()
-    if not _UNIT.fullmatch(unit):
+    if not _UNIT.fullmatch(unit) or _SECOND_NUMBER.search(unit):
         raise _malformed()
     return in_symbols(unit, locale) or None
 
@@ -123,16 +150,30 @@ def _malformed() -> EntryFault:
     return EntryFault((), rule, sentence=Sentence("entry-malformed"))
 
 
-def _is_list_in_parentheses(entry: str) -> bool:
-    """Return whether parentheses hold numbers with separators that no formula has."""
+def _is_list(entry: str, locale: Locale | None) -> bool:
+    """Return whether an entry has brackets or separators that no number and no formula has."""
+    if entry.startswith(("[", "{", "<")) or ";" in entry or _BARE_LIST.fullmatch(entry):
+        return True
     inside = re.match(r"\(([^()]*)\)", entry)
-    return inside is not None and _SEPARATOR.search(inside[1]) is not None
+    return inside is not None and (_SEPARATOR.search(inside[1]) is not None or _has_tight_commas(inside[1], locale))
 
 
-def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str]:
-    """Return a list of numbers or of such lists, and the unit behind it."""
-    end = max(map(entry.rfind, "])}")) + 1 if entry[0] in "[({" else len(entry)
-    inside, unit = entry[:end], entry[end:].strip()
+def _has_tight_commas(inside: str, locale: Locale | None) -> bool:
+    """Return whether the commas of ``2.5,5,6.5`` separate: points are decimal there, and nothing else can be read."""
+    if locale in WITH_COMMA or "," not in inside or "." not in inside or not re.fullmatch(r"[-+\d.,eE]+", inside):
+        return False
+    try:
+        plain_digits(inside, locale)
+    except EntryFault:
+        return True
+    return False
+
+
+def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str | None]:
+    """Return a list of numbers or of such lists, and its unit."""
+    bracketed = entry[0] in "[({<"
+    end = max(map(entry.rfind, "])}>")) + 1 if bracketed else len(entry)
+    inside, behind = entry[:end], entry[end:].strip()
     with_commas = locale in WITH_COMMA and re.search(r"\d,\d.*,\s|,\s.*\d,\d", inside)
     if inside.startswith("[") and not with_commas and not re.search("[;|]", inside):
         try:
@@ -140,15 +181,46 @@ def _listed(entry: str, locale: Locale | None) -> tuple[list[Any], str]:
         except (ValueError, RecursionError):
             read = None
         if isinstance(read, list):
-            return read, unit
-        remedy = "with decimal commas: [1,5; 2; 3]"
-        raise EntryFault((), "be a list such as [1.5, 2, 3]", remedy=remedy, sentence=Sentence("list-malformed"))
-    parts = re.split("[;|]" if re.search("[;|]", inside) else r",\s", inside.strip("[](){}"))
-    found = [number for part in parts if (number := leading_number(part.strip(), locale)) is not None]
-    *others, (last, rest) = found or [(0.0, "")]
-    if not unit and end == len(entry) and entry[0] not in "[({":
-        # Without brackets the unit follows the last number.
-        unit, rest = rest, ""
-    if len(found) < len(parts) or rest or any(behind for _, behind in others):
-        raise EntryFault((), "be a list of numbers such as [1,5; 2; 3]", sentence=Sentence("list-malformed"))
-    return [*(value for value, _ in others), last], unit
+            return read, _symbols(behind, locale)
+    found = [_element(part, locale) for part in _parts(inside, locale)]
+    units = [unit for _, unit in found]
+    if behind:
+        units.append(_symbols(behind, locale))
+    # One unit for all, or each with the same.
+    if len(found) < 2 or (any(units[:-1]) and len({*units}) > 1):
+        raise _no_list()
+    return [value for value, _ in found], units[-1]
+
+
+def _parts(inside: str, locale: Locale | None) -> list[str]:
+    """Return what stands between the separators of a list: semicolons, commas or, in brackets, spaces."""
+    bare = inside.strip("[](){}<>" if inside[:1] in ("[", "(", "{", "<") else "")
+    if re.search("[;|]", bare):
+        return re.split("[;|]", bare)
+    if re.search(r",\s", bare):
+        return re.split(r",\s", bare)
+    if _has_tight_commas(bare, locale) or (inside.startswith("[") and "," in bare and locale not in WITH_COMMA):
+        return bare.split(",")
+    if "," in bare and locale not in WITH_COMMA:
+        raise _no_list()
+    if _GROUPED.search(bare):
+        raise _no_list()
+    return bare.split()
+
+
+def _element(part: str, locale: Locale | None) -> tuple[float, str | None]:
+    """Return a number of a list, which may be a constant such as ``√2/2``, and the unit behind it."""
+    if not part.strip() or re.match(r"\s*[\[({<].*[;|,]", part):
+        raise _no_list()
+    entry = typed_entry(part, locale)
+    if type(entry.value) is float:
+        return entry.value, entry.unit
+    try:
+        return value_in_doubles(Formula.read(entry.formula or "", ()), {}), entry.unit
+    except (InvalidParameter, Undefined):
+        raise _no_list() from None
+
+
+def _no_list() -> EntryFault:
+    """Return the fault of a list that cannot be read."""
+    return EntryFault((), "be a list of numbers such as [1,5; 2; 3]", sentence=Sentence("list-malformed"))

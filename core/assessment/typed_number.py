@@ -71,11 +71,13 @@ def plain_digits(digits: str, locale: Locale | None) -> str:
     if _grouped([whole, part]) and not _is_decimal(last, locale):
         if last == "," and locale == "en":
             return whole + part
-        readings = {"digits": digits, "whole": whole + part, "decimal": f"{whole}.{part}", "padded": f"{digits}0"}
+        # With decimal commas the comma decides; without a locale only a digit more does.
+        number, clear = (f"{whole},{part}",) * 2 if locale in WITH_COMMA else (f"{whole}.{part}", f"{digits}0")
+        readings = {"digits": digits, "whole": whole + part, "decimal": number, "padded": clear}
         raise EntryFault(
             (),
             f"be a number that can be read in one way: {digits} may be {whole}{part} or {whole}.{part}",
-            remedy=f"write {whole}{part} or {digits}0",
+            remedy=f"write {whole}{part} or {clear}",
             sentence=Sentence("number-ambiguous", readings),
         )
     return f"{whole}.{part}"

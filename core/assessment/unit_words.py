@@ -15,6 +15,7 @@ from core.assessment.typed_number import Locale
 # Symbols that are often written with other capitals; none of these is another unit.
 SHARED = {
     "Kg": "kg", "KG": "kg", "kgs": "kg", "Rad": "rad", "Sec": "s", "RPM": "rpm", "Rpm": "rpm", "r.p.m": "rpm",
+    "rads": "rad", "kp": "kgf",
 }  # fmt: skip
 _GERMAN = {
     "sek": "s", "sekunde": "s", "sekunden": "s", "minute": "min", "minuten": "min",
@@ -32,7 +33,8 @@ _FRENCH = {
     "par": "/",
 }  # fmt: skip
 _SPANISH = {
-    "seg": "s", "segundo": "s", "segundos": "s", "minuto": "min", "minutos": "min", "hora": "h", "horas": "h",
+    "seg": "s", "segs": "s", "segundo": "s", "segundos": "s", "minuto": "min", "minutos": "min", "hora": "h",
+    "horas": "h",
     "día": "d", "días": "d", "metro": "m", "metros": "m", "centímetro": "cm", "centímetros": "cm",
     "milímetro": "mm", "milímetros": "mm", "kilómetro": "km", "kilómetros": "km", "gramo": "g", "gramos": "g",
     "kilogramo": "kg", "kilogramos": "kg", "tonelada": "t", "toneladas": "t", "grado": "deg", "grados": "deg",
@@ -43,6 +45,10 @@ WORDS: Mapping[Locale, Mapping[str, str]] = {"de": _GERMAN, "en": {}, "es": _SPA
 """Symbols by word, in small letters except the U of revolutions, where pint does not know the word or misreads it."""
 
 _WORD = re.compile(r"(?<![^\W_])(?:r\.p\.m|[^\W\d_²³¹]+)(?![^\W\d_²³¹])(\.(?!\w))?")
+
+
+_RUN_TOGETHER = re.compile(r"(?<![^\W_])rads(?=\s*(?:(?:\^|\*\*)\s*\(?)?\s*[-⁻])")
+"""In ``rads^-1`` the s is a second; in ``rads/s`` it is a plural."""
 
 
 def in_symbols(unit: str, locale: Locale | None) -> str:
@@ -56,6 +62,7 @@ def in_symbols(unit: str, locale: Locale | None) -> str:
     if locale is None and re.match(r"grad\b", unit, re.IGNORECASE):
         rule = "be written in symbols: grad may be a degree or a gon"
         raise EntryFault((), rule, remedy="write deg or gon", sentence=Sentence("unit-unknown"))
+    unit = _RUN_TOGETHER.sub("rad s", unit)
     words = SHARED if locale is None else {**SHARED, **WORDS[locale]}
     return _WORD.sub(lambda found: _symbol(found[0], words), unit)
 

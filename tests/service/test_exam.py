@@ -1,4 +1,4 @@
-"""An exam of 60 answers as students type them, in four locales, with the verdict of each decided by hand.
+"""An exam of 84 answers as students type them, in four locales, with the verdict of each decided by hand.
 
 The references are closed forms: the coin of moments 1, 1, 2 and angular velocity (1, 1, 1) has the body rate
 (2 - 1)/1 x 1 = 1 rad/s, the period 2 pi s and the angle atan(sqrt(2)/2) = 35.264 degrees to its angular momentum; a
@@ -63,6 +63,13 @@ EXAM: list[tuple[Locale, Any, str, Any, str]] = [
     ("de", COIN, "/tumbles", "nein", RIGHT),
     ("de", CUBOID, MOMENTS, "(2,5; 5; 6,5) kgm²", RIGHT),
     ("de", ATWOOD, IN_TIME, {"text": "[14,7; 14,7; 14,7] N", "times": [0.0, 0.1, 0.2]}, RIGHT),
+    ("de", COIN, "/period", "6,28 + - 0,01 s", UNREADABLE),
+    ("de", COIN, "/period", "1,745·10-3 h", UNREADABLE),
+    ("de", COIN, "/body_rate", "60/min", RIGHT),
+    ("de", COIN, "/body_rate", "1,0/s", RIGHT),
+    ("de", ATWOOD, TENSION, "1,5·g", UNREADABLE),
+    ("de", COIN, "/period", "rund 6,28 s", RIGHT),
+    ("de", CUBOID, MOMENTS, "2,5 kgm²; 5 kgm²; 6,5 kgm²", RIGHT),
     # Britain and the United States
     ("en", COIN, "/period", "6.28 s", RIGHT),
     ("en", COIN, "/period", "6,283 ms", RIGHT),
@@ -82,6 +89,15 @@ EXAM: list[tuple[Locale, Any, str, Any, str]] = [
     ("en", COIN, CONE, "atan(1/√2)", RIGHT),
     ("en", COIN, "/period", "6.28 ± 0.01 s", UNREADABLE),
     ("en", ATWOOD, TENSION, "-2 m M minus_g/(m + M)", UNREADABLE),
+    ("en", COIN, "/period", "6.28*s", RIGHT),
+    ("en", COIN, "/body_rate", "1/2π Hz", UNREADABLE),
+    ("en", COIN, "/body_rate", "1/(2π) Hz", RIGHT),
+    ("en", COIN, "/period", "6 s 280 ms", UNREADABLE),
+    ("en", COIN, CONE, "tan^-1(1/sqrt(2))", RIGHT),
+    ("en", CUBOID, MOMENTS, "2.5, 5, 6.5 kg m^2", RIGHT),
+    ("en", CUBOID, MOMENTS, "[5/2, 5, 13/2] kg m^2", RIGHT),
+    ("en", CUBOID, MOMENTS, "[2.5 5 7.5] kg m^2", WRONG),
+    ("en", ATWOOD, TENSION, "m*(-minus_g) + -m*minus_g*(M - m)/(m + M)", RIGHT),
     # France
     ("fr", CUBOID, MOMENTS, "[2,5; 5; 6,5] kg·m²", RIGHT),
     ("fr", CUBOID, MOMENTS, "[5; 10; 13] kg·m²", WRONG),
@@ -95,7 +111,15 @@ EXAM: list[tuple[Locale, Any, str, Any, str]] = [
     ("fr", COIN, "/body_rate", "9,549 tr/min", RIGHT),
     ("fr", COIN, "/body_rate", "1 rad.s-1", RIGHT),
     ("fr", COIN, "/tumbles", "oui", WRONG),
+    ("fr", ATWOOD, TENSION, "1,47.10¹ N", RIGHT),
+    ("fr", COIN, "/period", "2.10^0 s", WRONG),
+    ("fr", COIN, CONE, "Arctan(1/√2)", RIGHT),
+    ("fr", CUBOID, MOMENTS, "2,5 kg.m², 5 kg.m², 6,5 kg.m²", RIGHT),
     # Spain
+    ("es", COIN, "/period", "6'28 s", RIGHT),
+    ("es", ATWOOD, TENSION, "1,5 kp", RIGHT),
+    ("es", COIN, CONE, "arctg(1/√2)", RIGHT),
+    ("es", COIN, "/tumbles", "falsa", RIGHT),
     ("es", COIN, "/period", "T = 6,28 segundos", RIGHT),
     ("es", COIN, CONE, "35,26 grados", RIGHT),
     ("es", COIN, "/body_rate", "9,549 vueltas por minuto", RIGHT),
@@ -117,9 +141,9 @@ def test_every_answer_has_the_verdict_of_the_examiner(
 
 
 def test_the_exam_has_answers_in_every_locale_right_and_wrong() -> None:
-    assert len(EXAM) == 60
+    assert len(EXAM) == 84
     assert {entry[0] for entry in EXAM} == set(get_args(Locale))
-    assert 25 < sum(entry[-1] == RIGHT for entry in EXAM) < 45
+    assert 35 < sum(entry[-1] == RIGHT for entry in EXAM) < 65
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,8 @@ SPANISH: Mapping[str, str] = {
     "number-ambiguous": "{digits} puede significar {whole} o {decimal}. Escriba {whole} o {padded}.",
     "number-malformed": "Escriba el número con un solo separador decimal y, si separa los millares, en grupos de "
     "tres cifras.",
+    "power-of-ten": "Escriba las potencias de diez con ^, por ejemplo 2*10^-3.",
+    "quotient-unclear": "Use paréntesis: 1/2π puede significar 1/(2π) o (1/2)π.",
     "list-malformed": "Escriba una lista de números, por ejemplo [1,5; 2; 3].",
     "name-unknown": "El problema no tiene ninguna magnitud llamada «{name}». Los nombres son: {names}.",
     "name-from-zero": "El problema no tiene ninguna magnitud llamada «{name}»: la numeración empieza en 1. Los "

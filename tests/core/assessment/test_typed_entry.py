@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.assessment.claims import Claim
+from core.assessment.feedback.entry_fault import EntryFault
 from core.assessment.typed_entry import TypedEntry, typed_entry
 from core.assessment.typed_number import Locale
 from core.errors import InvalidParameter
@@ -60,6 +61,20 @@ from core.errors import InvalidParameter
         ("keine", None, None),
         ("0,1047 min", 0.1047, "min"),
         ("null", None, None),
+        ("falsch.", False, None),
+        ("|ω| ≅ 3 rad/s", 3.0, "rad/s"),
+        ("T: about 6.28 s", 6.28, "s"),
+        ("6,28.10⁻³ s", 0.00628, "s"),
+        ("1 rads^-1", 1.0, "rad s^-1"),
+        ("1 rads/s", 1.0, "rad/s"),
+        ("[1 2.5 -3] m", [1.0, 2.5, -3.0], "m"),
+        ("[5/2, 5, 13/2] m", [2.5, 5.0, 6.5], "m"),
+        ("[√2; 0] m", [2**0.5, 0.0], "m"),
+        ("2.5, 5, 6.5 m", [2.5, 5.0, 6.5], "m"),
+        ("(2.5,5,6.5) m", [2.5, 5.0, 6.5], "m"),
+        ("<1, 2> m", [1.0, 2.0], "m"),
+        ("1,5 m; 2 m", [1.5, 2.0], "m"),
+        ("2,5 kg, 5 kg", [2.5, 5.0], "kg"),
     ],
 )
 def test_values_with_units(text: str, value: Any, unit: str | None) -> None:
@@ -82,6 +97,12 @@ def test_values_with_units(text: str, value: Any, unit: str | None) -> None:
         ("(2,5)*m", "(2.5)*m", None),
         ("2,5 - -3 m", "2.5 - -3", "m"),
         ("2*-3 m", "2*-3", "m"),
+        ("a + -b", "a + -b", None),
+        ("2 Pi s", "2*pi", "s"),
+        ("3/2 π m", "3/2*pi", "m"),
+        ("Arctg(1/√2)", "atan(1/sqrt(2))", None),
+        ("tan⁻¹(a)", "atan(a)", None),
+        ("sin^(-1)(a)", "asin(a)", None),
     ],
 )
 def test_formulas(text: str, formula: str, unit: str | None) -> None:
@@ -103,6 +124,10 @@ def test_a_word_may_be_a_choice_or_a_name() -> None:
         ("1,234.5", "en", 1234.5),
         ("1.234,5", "de", 1234.5),
         ("1.234.567", "es", 1234567.0),
+        ("2.10^3", "fr", 2000.0),
+        ("1,5.10^(-3)", "de", 0.0015),
+        ("6'28", "es", 6.28),
+        ("6'280", "es", 6280.0),
     ],
 )
 def test_a_locale_decides_what_a_comma_is(text: str, locale: Locale, value: float) -> None:
@@ -132,6 +157,17 @@ def test_a_locale_decides_what_a_comma_is(text: str, locale: Locale, value: floa
         ("2.5 \u2212+ 0.347 s", None),
         ("2.5 +\u2212 0.347 s", "en"),
         ("2.5 (+-0.3) s", None),
+        ("2.5 + - 0.347 s", None),
+        ("2.5 - + .347 s", "en"),
+        ("2.10^3", None),
+        ("2·10-3 m", "de"),
+        ("1/2π Hz", None),
+        ("1/2sin(a)", "en"),
+        ("6 s 280 ms", None),
+        ("6.28 s or 6.29 s", "en"),
+        ("T = 2π/ω = 6,28 s", "de"),
+        ("[1 234 567]", None),
+        ("[1 m, 2 kg]", None),
         ("--2.153 s", None),
         ("2*m --3", None),
         ("1,5; 2 m; 3", None),
@@ -155,6 +191,33 @@ def test_both_readings_are_in_the_remedy_and_can_be_read() -> None:
     assert fault.value.remedy == "write 1234 or 1,2340"
     assert typed_entry("1234").value == 1234.0
     assert typed_entry("1,2340").value == 1.234
+
+
+def test_the_reading_with_a_decimal_comma_has_one_where_the_comma_decides() -> None:
+    with pytest.raises(EntryFault) as fault:
+        typed_entry("14.715 N", "de")
+    assert fault.value.sentence.text("de") == "14.715 kann 14715 oder 14,715 bedeuten. Schreiben Sie 14715 oder 14,715."
+    assert typed_entry("14,715 N", "de").value == 14.715
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value", "given"),
+    [
+        ("60/min", "rad s^-1", 60.0, "1/min"),
+        ("1/s", "rad s^-1", 1.0, "1/s"),
+        ("6,28·s", "s", 6.28, "s"),
+        ("2*kg*m", "kg m", 2.0, "kg*m"),
+    ],
+)
+def test_a_number_and_its_unit_may_have_a_sign_between(text: str, unit: str, value: float, given: str) -> None:
+    claim = Claim.read({"text": text}).as_quantity(unit, {"M": 1})
+    assert (claim.value, claim.unit, claim.formula) == (value, given, None)
+
+
+@pytest.mark.parametrize(("text", "unit", "names"), [("5*m", "m", {"m"}), ("1.5*g", "N", set()), ("2*x", "m", set())])
+def test_names_come_before_units_and_other_words_are_names(text: str, unit: str, names: set[str]) -> None:
+    claim = Claim.read({"text": text})
+    assert claim.as_quantity(unit, names) is claim
 
 
 WRITTEN = {"en": ".", "de": ",", "es": ",", "fr": ","}
