@@ -26,11 +26,12 @@ MEASURED = {
     "gon": ("rad", 0.015707963267948967),
     "turn": ("rad", 6.283185307179586),
     "J": ("J", 1.0),
+    "kgf": ("N", 9.80665),
     "N m": ("J", 1.0),
     "rpm": ("rad s^-1", 0.10471975511965977),
 }
-"""Values of the symbols in units of the International System, of which all but the gon are in its brochure (9th
-edition, tables 2 to 8); the gon is a four-hundredth of a turn."""
+"""Values of the symbols in units of the International System, of which all but two are in its brochure (9th edition,
+tables 2 to 8); the gon is a four-hundredth of a turn, kgf the weight of a kilogram at 9.80665 m/s^2."""
 
 
 def test_every_symbol_is_the_unit_that_it_should_be() -> None:
