@@ -2,9 +2,9 @@
 
 *Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
 leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a difference of two squares is
-the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants.
-*Separate*: what nothing ties to a place falls as its centre of mass does. The last two serve the motion from the given
-start only, never questions about its surroundings.
+the factor that vanishes. *Twins*: functions of time that are the same are one. *Pin*: coordinates at rest whose
+equations vanish wherever they stay are constants. *Separate*: what nothing ties to a place falls as its centre of mass
+does. The last two serve the motion from the given start only, never questions about its surroundings.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from core.multibody.algebra.polynomials import (
     variables,
 )
 from core.multibody.algebra.rank import Elimination, Line
+from core.multibody.equations.dynamics import parts
 from core.multibody.reduction.degenerate_rows import resolve
 from core.multibody.reduction.pinning import pin, separate
 from core.multibody.reduction.reduction import Reduced, substitute
@@ -39,7 +40,7 @@ _MOST_FACTORED = 8
 
 def reduced(table: Table, *, pinning: bool) -> Reduced:
     """Apply the passes to a table until none of them finds anything."""
-    return further(Reduced(table, identity(len(table.names)), table.names), pinning=pinning)
+    return further(Reduced(table, identity(len(table.names)), table.names, twins=table.twins), pinning=pinning)
 
 
 def further(state: Reduced, *, pinning: bool) -> Reduced:
@@ -52,7 +53,7 @@ def further(state: Reduced, *, pinning: bool) -> Reduced:
         changed = _linear(state) or changed
         changed = _straighten(state) or changed
         if not changed:
-            changed = resolve(state)
+            changed = resolve(state) or _twins(state)
         if not changed and pinning:
             changed = pin(state) or separate(state)
         if not changed:
@@ -187,6 +188,22 @@ def _completed(poly: Poly, index: int | None = None) -> tuple[Poly, Poly] | None
             other = tuple(i for i in key if i != index)
             base[other] = value / (2 * lead)
     return base, combined((1 / lead, poly), (-ONE, product(base, base)))
+
+
+def _twins(state: Reduced) -> bool:
+    """Make one of functions of time that are the same and meet in a part; parts apart keep their own.
+
+    Connections may say that sines are equal: cosines could change their sign then where they vanish.
+    """
+    part = {i: k for k, indices in enumerate(parts(state.table)) for i in indices}
+    for twin, first in state.twins:
+        both = state.expressions[twin], state.expressions[first]
+        apart = combined((ONE, both[0]), (-ONE, both[1]))
+        if variables([apart]) and len({part[i] for i in variables(both)}) == 1:
+            state.table.rows.append(Row.held(state.names[twin], apart))
+            state.steps.append(f"{state.names[twin]}: {state.names[first]} is the same function of time")
+            return True
+    return False
 
 
 def _linear(state: Reduced) -> bool:

@@ -23,6 +23,8 @@ class Reduced:
         Coordinates of the original table that nothing ever moves, though the connections would let it.
     steps : list of str
         What each pass did.
+    twins : sequence of (int, int)
+        Coordinates of the original table that are one function of time.
     """
 
     table: Table
@@ -30,6 +32,7 @@ class Reduced:
     names: list[str]
     pinned: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
+    twins: Sequence[tuple[int, int]] = ()
 
     def directions(self, changes: Sequence[Ball]) -> list[Ball]:
         """Return rates or higher derivatives of every coordinate of the original table, from those of this one."""

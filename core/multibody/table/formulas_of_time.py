@@ -158,6 +158,19 @@ class FormulaRows:
             indices = tuple(key[0] for poly in found for key in poly)
             self.table.follows.append(Following(indices, values, argument, self.table.rows[-1]))
 
+    def _note_twins(self, found: Sequence[Poly], *of: Poly) -> None:
+        """Take note of what coordinates that follow from the time are, and of the same ones before them."""
+        if not all(self._is_timed(poly) for poly in of):
+            return
+        known = self.measures.functions_of_time
+        first = {index: twin for index, twin in self.table.twins}
+        key = tuple(
+            tuple(sorted((tuple(first.get(i, i) for i in at), str(x.mid()), str(x.rad())) for at, x in poly.items()))
+            for poly in of
+        )
+        indices = [next(iter(poly))[0] for poly in found]
+        self.table.twins.extend(zip(indices, known.setdefault((len(found), key), indices), strict=True))
+
     def _require_positive(self, poly: Poly) -> None:
         """Refuse roots and powers that have no rate at the start."""
         if not self._value(poly) > 0:
@@ -197,6 +210,7 @@ class FormulaRows:
                 return combined((_constant(one), other))
         found = self._coordinate(self._value(first) * self._value(last), first, last)
         self._hold(difference(found, product(first, last)))
+        self._note_twins([found], first, last)
         return found
 
     def _quotient(self, first: Poly, last: Poly) -> Poly:
@@ -230,6 +244,7 @@ class FormulaRows:
     def _direction(self, angle: Poly) -> tuple[Poly, Poly]:
         """Return cosine and sine of an angle."""
         sine, cosine = pair = self._follow(_sine_and_cosine, angle)
+        self._note_twins(pair, angle)
         self._hold(combined((ONE, product(cosine, cosine)), (ONE, product(sine, sine)), (-ONE, constant(ONE))))
         self._roll((cosine, sine), (combined((-ONE, sine)), cosine), (constant(-ONE), angle))
         self._tie(pair, _sine_and_cosine, angle)

@@ -66,6 +66,8 @@ class Measures:
         self.kept: list[Kept] = []
         # The horizontal direction of a plane that spins about its vertical: rates along it press across the plane.
         self.pressed_by: list[Ball] | None = None
+        # The coordinates of functions of time, by what they are functions of.
+        self.functions_of_time: dict[tuple[object, ...], list[int]] = {}
         self._lengths: dict[tuple[str, ...], int] = {}
         self._inverses: dict[int, int] = {}
 

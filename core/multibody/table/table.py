@@ -151,6 +151,8 @@ class Table:
         Coordinates of which the time alone decides, so that no assembly of the start moves them.
     follows : list of Following
         Coordinates that are functions of others, each of those before it.
+    twins : list of (int, int)
+        Coordinates that are the same function of time as others before them.
     """
 
     names: list[str] = field(default_factory=list)
@@ -166,6 +168,7 @@ class Table:
     v: list[Ball] = field(default_factory=list)
     timed: set[int] = field(default_factory=set)
     follows: list[Following] = field(default_factory=list)
+    twins: list[tuple[int, int]] = field(default_factory=list)
 
     def independent_rows(self) -> list[int]:
         """Return the numbers of rows on which all others depend at the start, in order."""

@@ -215,3 +215,44 @@ def test_a_slider_that_does_not_start_where_it_is_driven_is_refused() -> None:
     with pytest.raises(PlacesDisagree, match=r"be 1 m at the start") as refused:
         answer(scene(BOB, driven_slider("sin(t)")))
     assert refused.value.path == ("connections", 0, "drive")
+
+
+@pytest.mark.parametrize("drive", ["sin(2*t)/2", "(1 - cos(3*t))/4", "t*sin(2*t)", "sin(t*t)"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_what_is_driven_twice_alike_goes_on_where_its_sine_or_cosine_vanishes(drive: str, dimension: int) -> None:
+    """The second connection says no more than the first; a bob on a spring follows, and ends nothing."""
+    more = [0] * (dimension - 2)
+    slider: dict[str, Any] = {"kind": "slider", "a": "p", "b": [0, 0, *more], "drive": drive}
+    if dimension == 3:
+        slider["direction"] = [1, 0, 0]
+    found = {
+        "gravity": [0, *more, -9],
+        "bodies": {"p": {"mass": 1, "at": [0, 0, *more]}, "bob": {"mass": 2, "at": [3, *more, -1]}},
+        "connections": [
+            {**slider, "name": "first"},
+            {**slider, "name": "again"},
+            {"kind": "spring", "a": "p", "b": "bob", "stiffness": 20},
+        ],
+    }
+    solution = solve_scene(scene_from(found), [0.5, 2, 3], ("trajectory",))
+    assert solution.events == ()
+    assert solution.trajectory is not None
+    column = solution.trajectory.columns["p.position"]
+    names = {"sin": np.sin, "cos": np.cos}
+    right = [eval(drive, {**names, "t": t}) for t in (0.5, 2, 3)]
+    assert np.asarray(column.values)[:, 0] == pytest.approx(right, abs=column.error + 4e-16)
+
+
+def test_two_that_are_driven_alike_have_nothing_to_do_with_one_another() -> None:
+    parts = []
+    for names in ("p", "pq"):
+        bodies = {name: {"mass": 1, "at": [k, "-1"]} for k, name in enumerate(names)}
+        rods = [
+            {"kind": "rod", "name": f"r{name}", "a": name, "b": [f"{k} + sin(2*t)/10", 0]}
+            for k, name in enumerate(names)
+        ]
+        found = {"gravity": [0, -9], "bodies": bodies, "connections": rods}
+        solution = solve_scene(scene_from(found), [0.5, 2], ("trajectory",))
+        assert solution.trajectory is not None
+        parts.append(solution.trajectory.columns["p.position"])
+    assert np.array_equal(parts[0].values, parts[1].values)
