@@ -305,7 +305,8 @@ TESTED_IN |= {
             "audit/samples audit/start"
         ),
         "audit/test_definitions": (
-            "audit/between_places audit/bodies audit/contact_definitions audit/contacts audit/definition "
+            "audit/between_places audit/bodies audit/coefficients audit/contact_definitions audit/contacts "
+            "audit/definition audit/guides "
             "audit/definition_of audit/joint_definitions audit/joints audit/law_definitions audit/laws "
             "audit/newton audit/placement audit/rolling audit/string_definitions audit/strings "
             "audit/surfaces"

@@ -15,6 +15,7 @@ from flint import arb
 from mpmath import asin as mp_asin
 from mpmath import cos as mp_cos
 from mpmath import diff, mp, mpf, pi
+from mpmath import log as mp_log
 from mpmath import sin as mp_sin
 from mpmath import sqrt as mp_sqrt
 
@@ -209,3 +210,24 @@ def test_the_rod_in_a_cylinder_agrees_with_the_named_scene(answer_of):
     assert answer["period"] == pytest.approx(named["period"], rel=EXACT)
     ends = [answer["forces"][f"{name}.normal"]["value"] for name in ("a", "b")]
     assert sorted(map(abs, ends)) == pytest.approx(sorted(named["forces_at_release"]), rel=EXACT)
+
+
+def test_a_bead_slides_on_a_rough_ring_by_the_exponential_of_its_angle(answer_of):
+    """v' = -mu v^2/r on a level ring: the angle is log(1 + mu v0 t/r)/mu."""
+    answer = answer_of("scenes/bead-on-rough-ring")
+
+    def places(t):
+        angle = mp_log(1 + mpf("0.3") * 5 * t) / mpf("0.3")
+        return [mp_cos(angle), mp_sin(angle)]
+
+    agree(answer, {"bead.position": [places(mpf(t)) for t in times(answer)]}, own=EXACT)
+    assert not answer["events"]
+
+
+def test_a_drawer_that_is_pulled_aside_presses_on_both_ends_of_its_runners(answer_of):
+    """A pull P at an arm h: both ends press by P h/L, so that it moves by P (1 - 2 mu h/L)."""
+    answer = answer_of("scenes/drawer-pulled-aside")
+    gain = 20 * (1 - 2 * mpf("0.3") * mpf("0.15") / mpf("0.4")) / 4
+    agree(answer, {"drawer.position": [[gain * mpf(t) ** 2 / 2, 0] for t in times(answer)]}, own=EXACT)
+    assert answer["forces"]["runners.normal"]["value"] == pytest.approx(2 * 20 * 0.15 / 0.4, rel=1e-14)
+    assert answer["forces"]["runners.friction"]["value"] == pytest.approx(-0.3 * 15, rel=1e-14)

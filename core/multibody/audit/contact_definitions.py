@@ -7,40 +7,17 @@ from dataclasses import replace
 from typing import Any
 
 from core.multibody.audit.bodies import Outline, Path, Reader
+from core.multibody.audit.coefficients import touch_of
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.definition_of import definition_of
-from core.multibody.audit.joints import AXES
 from core.multibody.audit.outlines import ByCorners, OnOutline
 from core.multibody.audit.placement import Place, Undefined
 from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
 from core.multibody.audit.surfaces import Face, Round, Tip
 from core.multibody.audit.turns_in_space import AxialStop, axis_between
 from core.multibody.language.contacts import Contact, Rolling
-from core.multibody.language.written import GROUND, Number
-
-
-def touch_of(
-    reader: Reader,
-    name: str,
-    path: Path,
-    restitution: Number | None,
-    friction: Number | Sequence[Number] | None = None,
-    law: str | None = None,
-) -> Touch:
-    """Return the coefficients of a contact or a string."""
-    static = kinetic = 0.0
-    if isinstance(friction, Sequence) and not isinstance(friction, str):
-        static, kinetic = (reader.number(x, (*path, "friction", i)) for i, x in enumerate(friction))
-    elif friction is not None:
-        static = kinetic = reader.number(friction, (*path, "friction"))
-    names: tuple[str, ...] = ()
-    if static and reader.dimension == 2:
-        names = (f"{name}.friction",)
-    elif static:
-        names = tuple(f"{name}.friction.{axis}" for axis in AXES)
-    bounces = 0.0 if restitution is None else reader.number(restitution, (*path, "restitution"))
-    return Touch(static, kinetic, bounces, names, law or reader.scene.impacts)
+from core.multibody.language.written import GROUND
 
 
 @definition_of.register

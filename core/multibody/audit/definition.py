@@ -140,6 +140,11 @@ class Definition:
         """Those of what is one-sided; None of what is held."""
         return None
 
+    @property
+    def excluded(self) -> str:
+        """The name of what does not push while this does: of one side of a guide without play, the other."""
+        return ""
+
     def steps(self, force: str) -> tuple[float, ...]:
         """Return by how much a gap or a force by a law may be off because whole turns are not counted (m, rad, N m)."""
         return ()

@@ -9,6 +9,7 @@ from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.driven import DrivenRod, DrivenSlider
 from core.multibody.audit.formula_definitions import value_or_formula
+from core.multibody.audit.guides import is_rubbing, rubbing_slider, rubbing_track
 from core.multibody.audit.joints import (
     Coincidence,
     OnCircle,
@@ -62,6 +63,8 @@ def slider(connection: Slider, reader: Reader, name: str, path: Path) -> Definit
         along = reader.unit(connection.direction, (*path, "direction"))
     else:
         along = reader.direction(connection.slope, (*path, "slope"))
+    if is_rubbing(connection, reader, name, path):
+        return rubbing_slider(connection, reader, name, (a, b), along, path)
     bodies, normals, attitude = (*a.bodies, *b.bodies), perpendicular(along), _attitude(reader, a, b)
     if connection.drive is None:
         return SliderDefinition(name, bodies, a, b, normals, attitude)
@@ -87,6 +90,8 @@ def track(connection: GuideCurve, reader: Reader, name: str, path: Path) -> Defi
     where, on = (*path, "on"), connection.on
     place, at = reader.place(connection.place, (*path, "place")), reader.place(on["at"], (*where, "at"))
     bodies = (*place.bodies, *at.bodies)
+    if is_rubbing(connection, reader, name, path):
+        return rubbing_track(connection, reader, name, place, at, path)
     if "radius" in on:
         return OnCircle(name, bodies, place, at, reader.number(on["radius"], (*where, "radius")))
     if "normal" in on:

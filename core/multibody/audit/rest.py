@@ -12,6 +12,7 @@ C. L. Lawson, R. J. Hanson, "Solving Least Squares Problems", 1974, chapter 23.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 
@@ -116,14 +117,21 @@ def _balanced(description: Description, *, wide: bool) -> bool:
         for name in one.efforts(placement, still).keys() - one.laws(placement, still).keys()
     }
     found = balance(description, placement, still, gains, idle, freedoms)
-    lines = [np.zeros(freedoms.count)]
+    lines: dict[str, list[Numbers]] = {"": [np.zeros(freedoms.count)]}
     for connection in description.connections:
+        own = lines.setdefault(connection.name if connection.excluded else "", [])
         for line, numbers in _lines(description, connection, freedoms, placement, wide=wide):
             row = np.zeros(freedoms.count)
             row[numbers] = line
-            lines.append(row)
+            own.append(row)
     weights = _weights(description, freedoms, found.size[:, 0])
-    return nonnegative(np.array(lines).T * weights[:, None], found.rest[:, 0] * weights) <= BALANCED
+    # Of both sides of a guide one presses.
+    sides = {frozenset((one.name, one.excluded)) for one in description.connections if one.excluded}
+    for pressing in product(*map(sorted, sides)):
+        every = np.array([row for name in ("", *pressing) for row in lines[name]])
+        if nonnegative(every.T * weights[:, None], found.rest[:, 0] * weights) <= BALANCED:
+            return True
+    return False
 
 
 def _at_start(description: Description) -> tuple[Placement, Motion]:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.multibody.audit.bodies import Path, Reader
-from core.multibody.audit.contact_definitions import touch_of
+from core.multibody.audit.coefficients import touch_of
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.driven import DrivenString

@@ -10,7 +10,7 @@ de glissement", Comptes rendus 121 (1895).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -18,7 +18,7 @@ from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.contacts.conditions_of_states import Situation, conditions_of, lasts, moves_as, same_motion
 from core.multibody.contacts.contact_forces import Balance, balanced
 from core.multibody.contacts.contact_responses import MOST_UNDECIDED, gap_rate, require_few, responses, slip_rate
-from core.multibody.contacts.contact_states import Problem, State, phase_table, sticks_more
+from core.multibody.contacts.contact_states import Problem, State, pairs_of_sides, phase_table, sticks_more
 from core.multibody.contacts.frictionless import decided_without_friction, is_smooth
 from core.multibody.contacts.slip_directions import (
     AHEAD,
@@ -75,6 +75,9 @@ def decided(
     # beside what the others do. What is not decided yet is taken to stay closed.
     for i, possible in choices.items():
         states[i] = possible[0]
+    known = list(choices)
+    for _, other in pairs_of_sides(unilateral, known):
+        states[known[other]] = State.OPEN
     assumed: dict[int, list[State]] = {}
     problems: dict[int, Problem] = {}
     for _ in range(len(groups) + 1):
@@ -119,21 +122,32 @@ def stays(base: Table, unilateral: Sequence[Unilateral], touching: Sequence[int]
     another motion besides, the scene is in equilibrium all the same.
     """
     q, v = base.q, base.v
-    states = [State.OPEN] * len(unilateral)
-    for i in touching:
-        states[i] = State.CLOSED if unilateral[i].slip is None else State.STICK
+    closed = {i: State.CLOSED if unilateral[i].slip is None else State.STICK for i in touching}
     found = responses(phase_table(base, (), (), q, v).table, unilateral, touching)
     acceleration = list(found.start)
-    at = Situation(base, unilateral, q, v, {i: (states[i],) for i in touching}, found)
+    at = Situation(base, unilateral, q, v, {i: (state,) for i, state in closed.items()}, found)
     for group in found.clusters():
         require_few(unilateral, group, "contacts in equilibrium at once")
-        balance = balanced(unilateral, group, [states[i] for i in group], found)
+        balances = (
+            balanced(unilateral, group, states, found) for states in _pressed_on_one_side(unilateral, group, closed)
+        )
+        balance = next((one for one in balances if one is not None and _holds(at, group, one)), None)
         if balance is None:
-            return False
-        if not all(is_zero(x) or x > 0 for x in conditions_of(at, group, balance)):
             return False
         acceleration = [a + (b - c) for a, b, c in zip(acceleration, balance.acceleration, found.start, strict=True)]
     return all(is_zero(x) for x in acceleration)
+
+
+def _holds(at: Situation, group: Sequence[int], balance: Balance) -> bool:
+    return all(is_zero(x) or bool(x > 0) for x in conditions_of(at, group, balance))
+
+
+def _pressed_on_one_side(
+    unilateral: Sequence[Unilateral], group: Sequence[int], closed: Mapping[int, State]
+) -> Iterator[list[State]]:
+    """Yield the states of a group in which all is closed, but of both sides of a guide one or the other."""
+    for open_ in product(*pairs_of_sides(unilateral, group)):
+        yield [State.OPEN if k in open_ else closed[i] for k, i in enumerate(group)]
 
 
 def _choices(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> tuple[State, ...]:
@@ -152,8 +166,11 @@ def _decided_group(at: Situation, group: Sequence[int], settled: Sequence[State]
     names = tuple(at.unilateral[i].name for i in group)
     consistent: list[Balance] = []
     several = False
-    alike = _sliding_alike(at, group)
+    alike, sides = _sliding_alike(at, group), pairs_of_sides(at.unilateral, group)
     for states in product(*(at.choices[i] for i in group)):
+        # In a guide without play and preload one side presses, if by nothing.
+        if not all((states[a] is State.OPEN) != (states[b] is State.OPEN) for a, b in sides):
+            continue
         if not all(_agree(states[a], states[b], sense) for a, b, sense in alike):
             continue
         if any(sticks_more(other.states, states) for other in consistent):

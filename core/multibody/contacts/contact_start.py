@@ -45,6 +45,9 @@ def assemble_contacts(base: Described) -> ContactStart:
         For things that overlap, and as `core.multibody.equations.assembly`.
     """
     table, paths, unilateral = base.measures.table, base.paths, base.measures.unilateral
+    # What a guide without play holds is a condition of places and velocities, and nothing that these open or strike.
+    guides = [Row.held(one.whole or one.name, one.gap) for one in unilateral if one.opposite is not None]
+    table.rows.extend(guides)
     moved = list(dict.fromkeys([*base.measures.coordinates.rounded, *assemble_places(table, paths)]))
     unilateral[:] = facing(unilateral, table.q, table.v, TOUCHING)
     touching = []
@@ -63,12 +66,13 @@ def assemble_contacts(base: Described) -> ContactStart:
                 f'start with what cannot overlap apart: "{one.name}" is missed by {as_text(-gap, 3)}',
                 remedy="move the bodies apart",
             )
-    rows = [Row.held(unilateral[i].name, unilateral[i].gap) for i in touching]
+    rows = [Row.held(unilateral[i].name, unilateral[i].gap) for i in touching if unilateral[i].opposite is None]
     whole = replace(table, rows=[*table.rows, *rows])
     assemble_places(whole, paths)
     table.q = whole.q
     # Rates that are left out are such that what touches stays, if it can, and rolls or rests, if it can.
     fitted = assemble_rates(table, base.measures.coordinates.given, paths, rows)
+    del table.rows[len(table.rows) - len(guides) :]
     _as_written(base, touching, fitted)
     # What rests has no rate, and not what rounding leaves of one.
     table.v = [ZERO if is_zero(x) else x for x in table.v]

@@ -38,6 +38,13 @@ def sticks_more(other: Sequence[State], one: Sequence[State]) -> bool:
     return any(a is not b for a, b in pairs) and all(a is b or (a is State.STICK and b.sense != 0) for a, b in pairs)
 
 
+def pairs_of_sides(unilateral: Sequence[Unilateral], group: Sequence[int]) -> list[tuple[int, int]]:
+    """Return which of a group are both sides of a place in a guide without play, by their places in the group."""
+    where = {unilateral[i].name: k for k, i in enumerate(group)}
+    pairs = ((k, where.get(unilateral[i].opposite or "", -1)) for k, i in enumerate(group))
+    return [(k, other) for k, other in pairs if k < other]
+
+
 def grips(most: Ball, rubs: Sequence[Ball]) -> list[Ball]:
     """Return what has to be at least zero where friction of at most so much holds: linear in the plane, not in space.
 

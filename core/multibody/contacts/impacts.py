@@ -268,8 +268,9 @@ def _group(
         return impulses
     at_once = _outcome(group, impulses, rates, found)
     taking = [i for i in group if impulses.get(normal[i], ZERO) != 0]
-    # A taut string passes on what pulls it at once.
-    apart = [i for i in taking if rates[normal[i]] != 0 or unilateral[i].closes != "taut"]
+    # A taut string, and a guide without play, passes on at once what pulls or presses it.
+    passing = [i for i in group if unilateral[i].closes == "taut" or unilateral[i].opposite is not None]
+    apart = [i for i in taking if rates[normal[i]] != 0 or i not in passing]
     if simultaneous == "together" or settled is not None:
         return at_once
     if len(apart) <= 1 and sum(rates[normal[i]] < 0 for i in group) <= 1:

@@ -19,7 +19,7 @@ from flint import arb_mat
 
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.contacts.contact_responses import Forces, Responses
-from core.multibody.contacts.contact_states import Problem, State, grips, sticks_more
+from core.multibody.contacts.contact_states import Problem, State, grips, pairs_of_sides, sticks_more
 from core.multibody.contacts.slip_directions import Direction, directions
 from core.multibody.table.connection_effects import Unilateral
 
@@ -46,8 +46,10 @@ def impulses_at_once(
 ) -> Forces | Problem:
     """Return the impulses of a group of contacts if all act together, or why they are undecided."""
     consistent: list[tuple[tuple[State, ...], Forces]] = []
-    several = False
+    several, sides = False, pairs_of_sides(unilateral, group)
     for states in product(*(_choices(i, found) for i in group)):
+        if any(State.OPEN not in (states[a], states[b]) for a, b in sides):
+            continue
         slides = [i for i, state in zip(group, states, strict=True) if state.sense and i in found.across]
         if len(slides) > 1:
             several = True
@@ -101,8 +103,10 @@ def likest(
     and lines that depend on one another may do so only nearly.
     """
     best: Forces = {}
-    least = float("inf")
+    least, sides = float("inf"), pairs_of_sides(unilateral, group)
     for states in product(*(_choices(i, found) for i in group)):
+        if any(State.OPEN not in (states[a], states[b]) for a, b in sides):
+            continue
         slides = [i for i, state in zip(group, states, strict=True) if state.sense and i in found.across]
         if len(slides) > 1:
             continue

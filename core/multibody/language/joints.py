@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from core.errors import Path
 from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, carrier_of
-from core.multibody.language.written import GROUND, Angle, Direction, Length, Number, Place, Surface, Vector
+from core.multibody.language.written import GROUND, Angle, Direction, Length, Number, Place, Ratio, Surface, Vector
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,9 @@ class Universal(TwoEnded):
 class Slider(TwoEnded):
     """Place `a` stays on a line through place `b`, fixed in the body of `b`; the bodies do not turn to each other.
 
-    With a `drive` by time it is that far from `b` along the line (m).
+    With a `drive` by time it is that far from `b` along the line (m). In the plane it may rub, with `friction`: one
+    coefficient or two, that of sticking first. Its guide holds it without play and without preload: at `a`, or, with a
+    `length` (m), at both ends of a block of that length about `a`, and of a `width` (m) across the line.
     """
 
     a: Place
@@ -119,12 +121,21 @@ class Slider(TwoEnded):
     slope: Angle | None = None
     direction: Direction | None = None
     drive: Length | None = None
+    friction: Ratio | Sequence[Ratio] | None = None
+    length: Length | None = None
+    width: Length | None = None
     name: str | None = None
     kind: ClassVar[str] = "slider"
 
+    @property
+    def one_sided(self) -> bool:
+        """See `Connection.one_sided`: where it rubs it sticks or slides, on one side of its guide or the other."""
+        return self.friction is not None
+
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""
-        return [(end, aspect) for end in (self.a, self.b) for aspect in ATTITUDE]
+        more: tuple[Aspect, ...] = () if self.length is None else ("turn",)
+        return [(end, aspect) for end in (self.a, self.b) for aspect in (*ATTITUDE, *more)]
 
 
 @dataclass(frozen=True)
@@ -144,13 +155,20 @@ class GuideCurve(Connection):
     """A place stays on a curve or surface.
 
     `on` is a line ``{at, slope}`` (in space ``{at, direction}``), a circle or sphere ``{at, radius}``, a parabola
-    ``{at, curvature, slope}`` (y = curvature x^2/2 from its vertex), in space a plane ``{at, normal}``.
+    ``{at, curvature, slope}`` (y = curvature x^2/2 from its vertex), in space a plane ``{at, normal}``. On a line or
+    circle of the plane it may rub, with `friction`: one coefficient or two, that of sticking first.
     """
 
     place: Place
     on: Surface
+    friction: Ratio | Sequence[Ratio] | None = None
     name: str | None = None
     kind: ClassVar[str] = "track"
+
+    @property
+    def one_sided(self) -> bool:
+        """See `Connection.one_sided`: where it rubs it sticks or slides, on one side of the curve or the other."""
+        return self.friction is not None
 
     def places(self) -> Iterable[object]:
         """See `Connection.places`."""

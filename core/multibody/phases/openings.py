@@ -36,7 +36,8 @@ def openings(
         The state at the start, as wide as it is not known.
     """
     away = {i: 0 for i, one in enumerate(found.unilateral) if i not in touching and evaluated(one.gap, q) > 0}
-    open_ = [i for i in touching if found.states[i] is State.OPEN and is_zero(evaluated(found.unilateral[i].gap, q))]
+    one_sided = [i for i in touching if found.unilateral[i].opposite is None]
+    open_ = [i for i in one_sided if found.states[i] is State.OPEN and is_zero(evaluated(found.unilateral[i].gap, q))]
     powers = {**away, **{i: 1 for i in open_}}
     slow = [i for i in open_ if is_zero(gap_rate(found.unilateral[i], q, v))]
     if not slow:

@@ -63,7 +63,9 @@ class ColumnsInPhases:
     def _of_phase(self, phase: Phase, times: Floats, how: How) -> dict[str, Column]:
         states = states_in(phase, times, finer=self.finer)
         whole = phase.models[0].whole
-        if whole.dropped and phase.bounces is None and whole.misfit(states.q, states.v) > _HOLDS:
+        # What rests keeps to all of its rows: its rates are rounding, and no size for one another.
+        moves = any(motion.moves for _, motion in whole.parts)
+        if whole.dropped and moves and phase.bounces is None and whole.misfit(states.q, states.v) > _HOLDS:
             raise NotApplicable(
                 "connections that depend on one another at the start do not do so later: the start is a singular place",
                 path=("connections",),

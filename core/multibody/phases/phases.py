@@ -438,10 +438,10 @@ class _Run:
             if i not in closed and (i == ending or is_zero(gap) or bool(gap < 0)):
                 met.append(i)
         self.touching = sorted({*closed, *met})
-        if len(met) > 1:
-            self.motion.noticed.append(
-                f"{', '.join(self.unilateral[i].name for i in met)} touch at one time, as far as that is known"
-            )
+        # The other sides of guides touch all the time.
+        names = [self.unilateral[i].name for i in met if self.unilateral[i].opposite is None]
+        if len(names) > 1:
+            self.motion.noticed.append(f"{', '.join(names)} touch at one time, as far as that is known")
 
     def _accumulate(self, phase: Phase) -> bool:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""

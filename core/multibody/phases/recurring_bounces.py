@@ -259,7 +259,7 @@ def _alone(
             return False
         if j == i:
             continue
-        if state is State.OPEN:
+        if state is State.OPEN and one.opposite is None:
             away = evaluated(one.gap, around) > 0
             if not (away or (gap_rate(one, around, rates) < 0 and _may_be_open(one, ends))):
                 return False

@@ -105,7 +105,8 @@ def watches(
         Powers of time with which gaps open; zero for those that are open.
     """
     closed = [i for i in range(len(unilateral)) if phase.normal[i] is not None]
-    gaps = [i for i in range(len(unilateral)) if i not in closed]
+    # The other side of a guide stays at zero.
+    gaps = [i for i, one in enumerate(unilateral) if i not in closed and one.opposite is None]
     found = [Watch(i, "gap", unilateral[i], power=openings.get(i)) for i in gaps]
     for force in admissible(unilateral, closed, states, phase) if of_forces else ():
         what: Literal["push", "grip"] = "grip" if force.grips else "push"

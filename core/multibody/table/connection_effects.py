@@ -170,6 +170,8 @@ class Unilateral:
         At or above zero as long as that one is what it may meet.
     first : bool
         Whether it meets the ends of edges: where two corners meet, that of the first shape takes the force.
+    opposite : str or None
+        In a guide without play the measure of the other side, whose gap is this one's below zero: one of both presses.
     """
 
     name: str
@@ -191,6 +193,7 @@ class Unilateral:
     facets: tuple[Facet, ...] = ()
     region: tuple[Poly, ...] = ()
     first: bool = True
+    opposite: str | None = None
 
     @property
     def slips(self) -> list[LinearForm]:

@@ -9,6 +9,7 @@ from core.multibody.algebra.polynomials import ONE, ZERO, constant, difference, 
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.written import GROUND
 from core.multibody.table.formulas_of_time import driven
+from core.multibody.table.guides import rubbing_slider, rubbing_track, rubs
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.moving_places import ends_of, require_two_bodies
 from core.multibody.table.rows import add_rows
@@ -65,6 +66,16 @@ def slider(connection: Slider, measures: Measures, name: str, path: Path) -> Non
         along = numerals.angle(0 if connection.slope is None else connection.slope, (*path, "slope"))
     else:
         raise InvalidParameter((*path, "direction"), "be given")
+    if rubs(measures, connection, path):
+        if connection.drive is not None:
+            raise InvalidParameter(
+                (*path, "friction"), "be left out beside a drive, whose force it would share", remedy="leave out one"
+            )
+        rubbing_slider(measures, name, connection, (a, b), along, path)
+        return
+    for field in ("length", "width"):
+        if getattr(connection, field) is not None and connection.friction is None:
+            raise InvalidParameter((*path, field), "be left out of a slider without friction")
     measures.slide(name, a, b, along, (*path, "direction"))
     measures.unturned(name, a, b, path)
     if connection.drive is None:
@@ -102,4 +113,7 @@ def weld(connection: Weld, measures: Measures, name: str, path: Path) -> None:
 @add_rows.register
 def track(connection: GuideCurve, measures: Measures, name: str, path: Path) -> None:
     """Hold a place on a curve or surface."""
+    if rubs(measures, connection, path):
+        rubbing_track(measures, name, connection, path)
+        return
     measures.on_curve(name, measures.coordinates.point(connection.place, (*path, "place")), connection.on, path)

@@ -68,11 +68,14 @@ class Combinations:
         if len(every) > MOST:
             raise NotSupported("more contacts at once than combinations of which are tried")
         found: list[tuple[Phase, Solution]] = []
+        sides = self.mechanism.sides(self.group)
         # Several directions at once of what begins to slide in space are tried only where nothing else is possible.
         for chosen in sorted(every, key=lambda modes: sum(mode.undirected for mode in modes) > 1):
             modes = list(settled)
             for i, mode in zip(self.group, chosen, strict=True):
                 modes[i] = mode
+            if not all(self._without_preload(modes[i], modes[k]) for i, k in sides):
+                continue
             more = sum(mode.undirected for mode in chosen) > 1
             if found and (more or any(sticks_more(phase.modes, modes) for phase, _ in found)):
                 continue
@@ -91,6 +94,11 @@ class Combinations:
         if not first.unique:
             raise Undecided(open_to, names)
         return max(least, key=lambda one: (len(one[0].closed), len(one[0].sticking)))
+
+    def _without_preload(self, first: Mode, second: Mode) -> bool:
+        """Return whether one side of a guide presses and the other does not; of an impact both may be left out."""
+        idle = sum(mode.kind is Kind.OPEN for mode in (first, second))
+        return idle == 1 or (idle == 2 and self.restitution is not None)
 
     def size(self, solution: Solution) -> float:
         """Return the size of what may change: the accelerations that gravity and speed could give are among it."""

@@ -42,6 +42,8 @@ def decide(mechanism: Mechanism, state: State, touching: Sequence[int], probe: P
     # Groups that do not push one another are decided apart: what is still undecided stays closed, if it can. What one
     # does may show by the motion of another alone.
     modes = [choices[i][0] if i in choices else OPEN for i in range(len(mechanism.one_sided))]
+    for _, other in mechanism.sides(active):
+        modes[other] = OPEN
     groups = clusters(mechanism, state, active) if active else []
     for group in groups if len(groups) < 2 else groups * 2:
         modes = _Lasting(mechanism, state, group, probe).only(modes, choices)[0].modes

@@ -141,8 +141,9 @@ class Impacts:
         found = self.at_once(group, rates)
         moves = {i: float(self.gaps[i] @ rates) / self.size for i in group}
         taking = [i for i in group if found.pushes[i] > NEARLY * max(found.pushes.values())]
-        # A string that is taut already takes its part at once.
-        apart = [i for i in taking if abs(moves[i]) > NEARLY or every[i].closes != "taut"]
+        # A string that is taut already, and a guide without play, takes its part at once.
+        passing = [i for i in taking if every[i].closes == "taut" or every[i].opposite]
+        apart = [i for i in taking if abs(moves[i]) > NEARLY or i not in passing]
         if self.mechanism.simultaneous == "together":
             return found
         if len(apart) <= 1 and sum(rate < -NEARLY for rate in moves.values()) <= 1:

@@ -16,6 +16,7 @@ from core.multibody.audit.between_places import BetweenPlaces
 from core.multibody.audit.bodies import Reader
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
+from core.multibody.audit.guides import Side
 from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.outlines import OnOutline
 from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, rate, with_rate
@@ -70,6 +71,8 @@ class OneSided:
         When it acts among impacts at one instant.
     closes, opens, sticks : str
         Its events.
+    opposite : str
+        In a guide without play the name of the other side; empty where there is none.
     """
 
     name: str
@@ -81,6 +84,7 @@ class OneSided:
     closes: str
     opens: str
     sticks: str
+    opposite: str = ""
 
 
 @dataclass(frozen=True)
@@ -185,6 +189,12 @@ class Mechanism:
             [one.touch.tangential for one in one_sided],
         )
 
+    def sides(self, numbers: Sequence[int]) -> list[tuple[int, int]]:
+        """Return which of some measures are both sides of a place in a guide."""
+        where = {self.one_sided[i].name: i for i in numbers}
+        pairs = ((i, where.get(self.one_sided[i].opposite, -1)) for i in numbers)
+        return [(i, other) for i, other in pairs if i < other]
+
     def rough(self, numbers: Iterable[int]) -> list[int]:
         """Return those of some measures that have friction."""
         return [i for i in numbers if self.one_sided[i].slips]
@@ -273,10 +283,13 @@ def _columns(found: list[tuple[Owner, Numbers]], count: int) -> tuple[list[Owner
 def _one_sided(one: Definition, placement: Placement, still: Motion, reader: Reader) -> Iterator[OneSided]:
     """Yield the measures of a connection that stay at or above zero."""
     closes, opens, rolls = "touch", "lift-off", False
+    opposite = one.opposite if isinstance(one, Side) else ""
     if isinstance(one, StringDefinition):
         closes, opens = "taut", "slack"
     elif isinstance(one, (Stop, AxialStop)):
         closes, opens = "stop", "release"
+    elif opposite:
+        opens = "release"
     elif isinstance(one, OnFace):
         rolls = one.tip.size > 0.0
     elif isinstance(one, OnOutline):
@@ -294,4 +307,4 @@ def _one_sided(one: Definition, placement: Placement, still: Motion, reader: Rea
         order = getattr(connection, "order", None)
         when = None if order is None else reader.number(order, ("connections", "order"))
         width = 0 if slip is None else np.size(slip)
-        yield OneSided(name, key, one, touch, width, when, closes, opens, "roll" if rolls else "stick")
+        yield OneSided(name, key, one, touch, width, when, closes, opens, "roll" if rolls else "stick", opposite)

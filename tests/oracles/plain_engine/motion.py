@@ -196,7 +196,8 @@ class _Run:
         opened = [i for i in range(len(mechanism.one_sided)) if i not in phase.closed]
         if kind is None and opened:
             gaps, _ = mechanism.gap_rates(state)
-            found |= {("gap", i): float(gaps[i]) for i in opened}
+            # The other sides of guides stay at zero.
+            found |= {("gap", i): float(gaps[i]) for i in opened if not mechanism.one_sided[i].opposite}
         if kind in (None, "rank"):
             found["rank", -1] = phase.independence(state)
         if kind in (None, "span"):

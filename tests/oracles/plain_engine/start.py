@@ -48,13 +48,14 @@ def start(mechanism: Mechanism, faster: float = 1.0) -> tuple[State, list[int]]:
     faster : float
         Factor of all given velocities.
     """
-    state = projected(mechanism, mechanism.coordinates.start(), [])
+    guides = [i for i, one in enumerate(mechanism.one_sided) if one.opposite]
+    state = projected(mechanism, mechanism.coordinates.start(), guides)
     gaps, _ = mechanism.gap_rates(state)
     touching = [i for i, gap in enumerate(gaps) if abs(gap) < TOUCHING]
     state = projected(mechanism, state, touching)
     state = replace(state, rates=np.zeros(mechanism.coordinates.size))
     rows = mechanism.rows(state, touching)
-    wished = [k for k, (what, _) in enumerate(rows.owners) if what == "push"]
+    wished = [k for k, (what, i) in enumerate(rows.owners) if what == "push" and not mechanism.one_sided[i].opposite]
     held = [k for k in range(len(rows.owners)) if k not in wished]
     given, speeds = _given(mechanism, state)
     lines, values = np.concatenate([rows.lines[held], given]), np.concatenate([-rows.rates[held], faster * speeds])
@@ -66,7 +67,7 @@ def start(mechanism: Mechanism, faster: float = 1.0) -> tuple[State, list[int]]:
         matrix = np.block([[mechanism.inertia(state), lines.T], [lines, np.zeros((m, m))]])
         right = np.concatenate([np.zeros(n), values])
         state = replace(state, rates=np.linalg.lstsq(matrix, right, rcond=1e-11)[0][:n])
-    return projected(mechanism, state, []), touching
+    return projected(mechanism, state, guides), touching
 
 
 def _given(mechanism: Mechanism, state: State) -> tuple[Floats, Floats]:
