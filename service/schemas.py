@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
+from functools import cache
 from math import isfinite
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -99,11 +100,19 @@ class Envelope(Signed):
 
 def fields_of(found: Any) -> dict[str, Any]:
     """Return a dataclass of core field by field, mappings as JSON objects."""
-    return {
-        entry.name: dict(value) if isinstance(value, Mapping) else value
-        for entry in fields(found)
-        for value in (getattr(found, entry.name),)
-    }
+    answer = {name: getattr(found, name) for name in _names_of_fields(found.__class__)}
+    # Most are numbers, and what is a mapping is slow to find out.
+    mappings = [name for name, value in answer.items() if type(value) not in _PLAIN and isinstance(value, Mapping)]
+    return answer | {name: dict(answer[name]) for name in mappings} if mappings else answer
+
+
+_PLAIN = frozenset({type(None), float, int, bool, str, tuple, list})
+"""Types of most fields."""
+
+
+@cache
+def _names_of_fields(cls: type[Any]) -> tuple[str, ...]:
+    return tuple(entry.name for entry in fields(cls))
 
 
 class Fault(View):

@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from core.arrays import Floats, Integers, largest_magnitude, row_lengths
+from core.arrays import Floats, Integers, largest, largest_magnitude, row_lengths
 from core.notices import Notice
 from core.quantities import Duration
 from core.systems.system import Model
@@ -59,7 +59,7 @@ class Column:
         # In a power of two as unit, so that no square overflows.
         _, exponent = math.frexp(greatest)
         size = row_lengths(np.ldexp(self.values, -exponent))
-        return float(size.max(initial=0.0)) * 2.0 ** (exponent - 1) * 2.0
+        return largest(size) * 2.0 ** (exponent - 1) * 2.0
 
 
 @dataclass(frozen=True)

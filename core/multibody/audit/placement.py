@@ -179,7 +179,7 @@ def turned(turn: Numbers) -> Numbers:
 
 def dot(a: Numbers, b: Numbers) -> Numbers:
     """Return the scalar product along the last axis."""
-    found: Numbers = (a * b).sum(axis=-1)
+    found: Numbers = np.add.reduce(a * b, axis=-1)
     return found
 
 

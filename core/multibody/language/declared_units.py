@@ -39,6 +39,8 @@ class Measured:
 
     def check(self, value: object, path: Path, measure: object) -> None:
         """See `DeclaredUnit.check`; in polar form the second number is an angle."""
+        if is_plain(value):
+            return
         if isinstance(value, Mapping) and set(value) == {"value", "unit"}:
             unit = self.of_turn if self.of_turn is not None and measure == "turn" else self.unit
             where = (*path, "unit")
@@ -107,10 +109,15 @@ def check_units(part: Any, path: Path) -> None:
     measure = getattr(part, "measure", None)
     for name, declared in declared_units(type(part)).items():  # type: ignore[arg-type]
         value = getattr(part, name)
-        if type(value) in PLAIN or (type(value) in (list, tuple) and PLAIN.issuperset(map(type, value))):
-            continue
-        # A word of Python's has a sign behind it as the name of a field.
-        declared.check(value, (*path, name.rstrip("_")), measure)
+        if not is_plain(value):
+            # A word of Python's has a sign behind it as the name of a field.
+            declared.check(value, (*path, name.rstrip("_")), measure)
+
+
+def is_plain(value: object) -> bool:
+    """Return whether something is written without a unit, or a list of what is."""
+    kind = type(value)
+    return kind in PLAIN or (isinstance(value, (list, tuple)) and PLAIN.issuperset(map(type, value)))
 
 
 @cache

@@ -159,7 +159,7 @@ class Numerals:
     def _written(self, value: object, path: Path) -> Ball:
         if isinstance(value, str):
             return self._formula(value, path)
-        if not isinstance(value, (float, Decimal)) and isinstance(value, Mapping):
+        if not isinstance(value, (float, int, Decimal)) and isinstance(value, Mapping):
             return self._of_object(value, path)
         plain = isinstance(value, float) and isfinite(value) and not self.doubles
         found = _decimal(repr(value)) if plain else _exact(value, path)
@@ -213,14 +213,15 @@ class Numerals:
 
     def vector(self, value: object, path: Path, dimension: int) -> tuple[Ball, ...]:
         """Return a vector, in the plane also as ``{"polar": [r, angle]}``."""
-        if isinstance(value, Mapping) and set(value) == {"polar"} and dimension == 2:
+        if type(value) is not list and isinstance(value, Mapping) and set(value) == {"polar"} and dimension == 2:
             polar = value["polar"]
             if isinstance(polar, str) or not isinstance(polar, Sequence) or len(polar) != 2:
                 raise InvalidParameter((*path, "polar"), "be a distance and an angle")
             r = self.number(polar[0], (*path, "polar", 0))
             cosine, sine = self.angle(polar[1], (*path, "polar", 1))
             return r * cosine, r * sine
-        if isinstance(value, (str, Mapping)) or not isinstance(value, Sequence):
+        # What is tried first is what it mostly is: an abstract class takes longer to find out.
+        if isinstance(value, str) or not isinstance(value, (list, tuple, Sequence)):
             raise InvalidParameter(path, f"be a list of {dimension} numbers")
         if len(value) != dimension:
             raise InvalidParameter(path, f"have {dimension} entries, not {len(value)}")

@@ -61,6 +61,8 @@ def _may_depend(table: Table, rows: Sequence[Row]) -> bool:
     size = np.max(np.abs(lines), axis=1)
     if len(rows) > len(table.names) or not np.all(size > 0.0) or not np.all(np.isfinite(size)):
         return True
+    if len(rows) == 1:
+        return False
     singular = np.linalg.svd(lines / size[:, None], compute_uv=False)
     return bool(singular[-1] <= _INDEPENDENT * singular[0])
 

@@ -109,7 +109,10 @@ def with_natural_sizes(
 def scaled(columns: Mapping[str, Column]) -> dict[str, Column]:
     """Return columns with what their errors are relative to."""
     scales = scales_of(columns)
-    return {name: replace(column, scale=scales[name]) for name, column in columns.items()}
+    return {
+        name: Column(one.values, one.unit, one.error, one.how, one.inherited, scales[name])
+        for name, one in columns.items()
+    }
 
 
 def require_known(columns: Mapping[str, Column]) -> None:

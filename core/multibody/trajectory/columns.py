@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from core.arrays import Floats, largest_magnitude, row_lengths
+from core.arrays import Floats, largest, largest_magnitude, row_lengths
 from core.multibody.motion.attitudes import quaternions
 from core.multibody.motion.motion import States
 from core.multibody.motion.whole import Whole
@@ -306,4 +306,4 @@ def _at(function: StateFunction, q: Floats, v: Floats) -> Floats:
 
 def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
     size = np.abs(values) if values.ndim == 1 else row_lengths(values)
-    return _MARGIN * float(errors.max(initial=0.0)) + rounding * float(size.max(initial=0.0))
+    return _MARGIN * largest(errors) + rounding * largest(size)
