@@ -17,6 +17,7 @@ from service.routes.described_scenes import DESCRIBED_SCENES
 from service.routes.examples import examples
 from service.routes.find import finding
 from service.routes.fits import fitting
+from service.routes.interchange import INTERCHANGE
 from service.routes.plan import planning
 from service.routes.rotation.ensemble import ENSEMBLE
 from service.routes.rotation.precession import PRECESSION
@@ -54,7 +55,7 @@ def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostR
     # A question asked backwards is a question that may be planned, graded and varied itself.
     studies = studying((*answering, find, fits))
     about_others = (
-        planning((*answering, find, fits, studies)),
+        planning((*answering, *INTERCHANGE, find, fits, studies)),
         find,
         fits,
         assessing((*in_doubles, find), certified),
@@ -63,5 +64,6 @@ def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostR
     )
     shown = examples()
     return tuple(
-        replace(route, examples=route.examples or shown[route.operation_id]) for route in (*answering, *about_others)
+        replace(route, examples=route.examples or shown[route.operation_id])
+        for route in (*answering, *INTERCHANGE, *about_others)
     )

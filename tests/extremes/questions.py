@@ -539,6 +539,24 @@ def _first_number(value: Any, pointer: str = "") -> str | None:
     return pointer if isinstance(value, int | float) and not isinstance(value, bool) else None
 
 
+def documents() -> Named:
+    """Yield a chain with a keyframe, with a mass, an arm, a moment and a rate of every size."""
+    inertial = '<inertial pos="0 {1!r} 0.1" mass="{0!r}" diaginertia="{2!r} {2!r} {2!r}"/>'
+    inner = '<body pos="{1!r} 0 -1"><joint axis="0 1 0" stiffness="{0!r}"/>' + inertial + "</body>"
+    text = '<mujoco><worldbody><body euler="10 20 30"><joint/>' + inertial + inner + "</body></worldbody>"
+    text += '<keyframe><key qvel="{3!r} 1"/></keyframe></mujoco>'
+    for size in SIZES:
+        for k in range(4):
+            given = [size if i == k else 1.0 for i in range(4)]
+            yield f"number {k} is {size:g}", {"document": text.format(*given)}
+
+
+def exports() -> Named:
+    for name, question in [*described()][::4]:
+        scene = {key: value for key, value in question.items() if key in ("gravity", "bodies", "connections", "let")}
+        yield name, scene | {"format": "mjcf"}
+
+
 QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/bodies/mass-properties": bodies,
     "/v1/rotation/trajectory": trajectories,
@@ -561,6 +579,8 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/certified/scenes/rod-in-hole": certified(rods),
     "/v1/certified/scenes/chain-on-wedge": certified(chains),
     "/v1/scenes": described,
+    "/v1/scenes/import": documents,
+    "/v1/scenes/export": exports,
     "/v1/plan": plans,
     "/v1/assessments": assessments,
     "/v1/variants": variants,

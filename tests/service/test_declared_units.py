@@ -12,7 +12,13 @@ from service.routes import questions
 from service.routes.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.routing import PostRoute
 
-ROUTES = {route.path: route for route in questions() if not route.path.startswith("/v1/certified/")}
+WITHOUT_UNITS = ("/v1/scenes/import", "/v1/scenes/export")
+"""Answers that are documents."""
+ROUTES = {
+    route.path: route
+    for route in questions()
+    if not route.path.startswith("/v1/certified/") and route.path not in WITHOUT_UNITS
+}
 DEEPEST = 6
 
 

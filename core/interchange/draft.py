@@ -1,0 +1,194 @@
+"""What was read of a file, before it is written as a scene: bodies at their places, joints between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from core.arrays import Floats
+from core.interchange.frames import Frame
+from core.interchange.xml_reading import Element
+
+JointKind = Literal[
+    "weld",
+    "hinge",
+    "slide",
+    "ball",
+    "universal",
+    "cylindrical",
+    "on-line",
+    "on-plane",
+    "particle",
+    "planar",
+    "planar-particle",
+    "hinge-on-line",
+]
+"""How a body may move relative to its parent, from which it is free without a joint: a hinge turns about its axis, a
+slide moves along it; `on-line` and `on-plane` are a point of the body on a line or plane, about which it turns freely;
+a particle moves and does not turn. The last three are of a plane."""
+
+OF_THE_PLANE = ("planar", "hinge-on-line")
+"""Joints that only a scene of the plane has."""
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Something that a scene does not say, or that a file cannot.
+
+    Attributes
+    ----------
+    at : int or str
+        Line of the document from 1, or the JSON pointer of a part of the scene.
+    what : str
+        The element or part.
+    why : str
+    changes_motion : bool
+        Whether the motion may be another without it.
+    """
+
+    at: int | str
+    what: str
+    why: str
+    changes_motion: bool
+
+
+@dataclass
+class DraftBody:
+    """A body.
+
+    Attributes
+    ----------
+    name : str
+    frame : Frame
+        Of the body in space; all else of it is given in this frame.
+    mass : float
+        In kg.
+    centre : ndarray, shape (3,)
+        Centre of mass (m).
+    tensor : ndarray, shape (3, 3)
+        Of inertia about the centre of mass (kg m^2).
+    line : int
+    velocity, angular_velocity : ndarray, shape (3,)
+        Of the origin of the frame and of the body, along the axes of space (m/s, rad/s).
+    shape : dict or None
+        As in a scene.
+    """
+
+    name: str
+    frame: Frame
+    mass: float
+    centre: Floats
+    tensor: Floats
+    line: int
+    velocity: Floats = field(default_factory=lambda: np.zeros(3))
+    angular_velocity: Floats = field(default_factory=lambda: np.zeros(3))
+    shape: dict[str, Any] | None = None
+
+    @property
+    def massive(self) -> bool:
+        """Whether it has mass or inertia."""
+        return self.mass != 0.0 or bool(self.tensor.any())
+
+
+@dataclass
+class DraftJoint:
+    """A joint of a body with its parent.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+    parent : str or None
+        None is the ground.
+    child : str
+    at : ndarray, shape (3,)
+        In space at the start (m).
+    axes : sequence of ndarray, shape (3,)
+        Along the axes of space at the start: of a hinge, slide or cylindrical joint one, of a universal joint that of
+        the parent and that of the child, of a line its direction, of a plane its normal, of a hinge on a line the
+        direction and the axis.
+    line : int
+    damping, stiffness : float
+        Of a hinge N m s/rad and N m/rad, of a slide N s/m and N/m.
+    rest : float
+        Turn or way from the start at which the stiffness has no force (rad, m).
+    """
+
+    name: str
+    kind: JointKind
+    parent: str | None
+    child: str
+    at: Floats
+    axes: Sequence[Floats]
+    line: int
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
+
+
+Ended = tuple[str | None, Floats]
+"""A place: the body, or None for the ground, and the point in space at the start."""
+
+
+@dataclass
+class DraftConnection:
+    """Another connection between places.
+
+    Attributes
+    ----------
+    name : str
+    places : mapping of str to place, or list of places
+        By the field of the connection.
+    rest : dict
+        The fields that are no places, and the kind.
+    """
+
+    name: str
+    places: dict[str, Ended | list[Ended]]
+    rest: dict[str, Any]
+
+
+@dataclass
+class Draft:
+    """A model that was read.
+
+    Attributes
+    ----------
+    gravity : ndarray, shape (3,)
+    bodies : dict of str to DraftBody
+    joints : list of DraftJoint
+    connections : list of DraftConnection
+    contacts : list of (body, point, normal, friction)
+        Fixed planes that bodies with a shape may touch.
+    left_out : list of LeftOut
+    moves : bool
+        Whether velocities are given.
+    """
+
+    gravity: Floats
+    bodies: dict[str, DraftBody] = field(default_factory=dict)
+    joints: list[DraftJoint] = field(default_factory=list)
+    connections: list[DraftConnection] = field(default_factory=list)
+    contacts: list[tuple[str, Floats, Floats, float]] = field(default_factory=list)
+    left_out: list[LeftOut] = field(default_factory=list)
+    moves: bool = False
+
+    def carrier(self, name: str | None) -> str | None:
+        """Return the body of which another is a part: massless, or welded to the ground; None is the ground."""
+        if name is None:
+            return None
+        joint = next((one for one in self.joints if one.child == name), None)
+        if joint is None or joint.kind != "weld":
+            return name
+        parent = self.carrier(joint.parent)
+        # What is welded to the ground does not move, whatever its mass.
+        return name if self.bodies[name].massive and parent is not None else parent
+
+    def leave_out(self, element: Element, why: str, *, changes_motion: bool = True) -> None:
+        """Say that an element is not taken."""
+        name = element.get("name")
+        what = f"{element.name} {name}" if name else element.name
+        self.left_out.append(LeftOut(element.line, what[:100], why, changes_motion))

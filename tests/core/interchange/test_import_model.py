@@ -1,0 +1,59 @@
+"""Documents told apart by their root, and the scenes that are written of what was read."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.errors import InvalidParameter
+from core.interchange.import_model import import_model
+from tests.core.interchange.answers import imported
+
+INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("<model/>", 'not "model"'),
+        ('<xacro:macro xmlns:xacro="x"/>', "expanded to URDF"),
+        ("<mujoco/>", "have a body that moves"),
+    ],
+)
+def test_other_documents_are_refused(text: str, says: str) -> None:
+    with pytest.raises(InvalidParameter) as fault:
+        import_model(text)
+    assert says in f"{fault.value.detail} {fault.value.remedy}"
+
+
+def test_names_become_names_of_a_scene() -> None:
+    """Of letters, digits, - and _, each once, also beside names of joints."""
+    bodies = "".join(
+        f'<body name="{name}"><joint name="{joint}"/>{INERTIAL}</body>'
+        for name, joint in (("1 left", "a/b"), ("ground", "a b"), ("a-b", "j"))
+    )
+    scene = import_model(f"<mujoco><worldbody>{bodies}</worldbody></mujoco>").scene
+    assert list(scene["bodies"]) == ["body-1-left", "ground-2", "a-b"]
+    assert [one["name"] for one in scene["connections"]] == ["a-b-2", "a-b-3", "j"]
+
+
+def test_joints_of_the_plane_elsewhere_are_refused() -> None:
+    joints = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 1"/><joint axis="0 -1 1"/>'
+    with pytest.raises(InvalidParameter, match="line 2: these joints are joints of a model in a plane"):
+        import_model(f"<mujoco><worldbody>\n<body>{joints}{INERTIAL}</body></worldbody></mujoco>")
+
+
+def test_a_slide_on_the_ground_has_its_spring_and_damper() -> None:
+    """m x'' = -k (x - x0) - b x' along a tilted axis, without gravity."""
+    body = '<body pos="5 0 0"><joint type="slide" axis="0.6 0 0.8" stiffness="3" damping="2" springref="0.5"/>'
+    text = f"""<mujoco><option gravity="0 0 0"/><worldbody>{body}{INERTIAL}</body></worldbody>
+<keyframe><key qpos="0.1" qvel="0.2"/></keyframe></mujoco>"""
+    _, found = imported(text)
+    along = -3 * (0.1 - 0.5) - 2 * 0.2
+    assert found["body-1"] == pytest.approx((0.6 * along, 0.0, 0.8 * along), abs=1e-13)
+
+
+def test_what_is_welded_to_the_ground_is_the_ground() -> None:
+    post = f'<body name="post" pos="0 0 1">{INERTIAL}<body name="arm"><joint axis="1 0 0"/>{INERTIAL}</body></body>'
+    scene = import_model(f"<mujoco><worldbody>{post}</worldbody></mujoco>").scene
+    assert list(scene["bodies"]) == ["arm"]
+    assert scene["connections"][0]["b"] == [0.0, 0.0, 1.0]

@@ -1,0 +1,147 @@
+"""MJCF as scenes: configurations, velocities and inertias as MuJoCo has them, where it is installed, or by hand."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.errors import InvalidParameter
+from core.interchange.import_model import import_model
+from tests.core.interchange.answers import accelerations, imported
+
+CHAIN = """<mujoco>
+<compiler angle="degree" eulerseq="zyx"/>
+<default><geom density="500" contype="0" conaffinity="0"/><default class="arm"><geom type="capsule" size="0.03"/>
+</default></default>
+<worldbody>
+<body name="one" pos="0 0.1 1" euler="10 20 30" childclass="arm">
+<joint name="h" axis="1 2 0" damping="0.3"/>
+<geom fromto="0 0 0 0.2 0 -0.8"/>
+<geom class="main" type="box" size="0.1 0.05 0.2" pos="0 0.1 0" axisangle="0 1 0 40"/>
+<body name="two" pos="0.2 0 -0.8" quat="1 0.2 0 0.1"><joint type="ball"/>
+<geom type="ellipsoid" size="0.1 0.2 0.3" mass="2"/>
+<body name="three" pos="0 0 -0.4" xyaxes="1 1 0 -1 1 0"><joint type="slide" axis="0 1 1"/>
+<geom type="cylinder" size="0.1 0.2"/>
+</body></body></body>
+<body name="free" pos="2 0 0"><freejoint/>
+<inertial pos="0.1 0 0" mass="3" fullinertia="0.3 0.4 0.5 0.01 0.02 0.03"/></body>
+</worldbody>
+<keyframe><key qpos="0.2 0.9 0.1 0.2 0 0.05 2 1 0 0.9 0 0.3 0" qvel="1 0.5 -0.4 0.3 0.7 0.1 0.2 0.3 1 2 3"/></keyframe>
+</mujoco>"""
+
+
+def test_a_chain_with_a_keyframe_is_that_of_mujoco() -> None:
+    """Masses, centres, velocities and accelerations by MuJoCo itself."""
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(CHAIN)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    mujoco.mj_rnePostConstraint(model, data)
+    found, rates = imported(CHAIN)
+    for name in ("one", "two", "three", "free"):
+        i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+        body, read = found.scene["bodies"][name], np.zeros(6)
+        assert body["mass"] == pytest.approx(model.body_mass[i], rel=1e-12)
+        assert body["at"] == pytest.approx(data.xipos[i], abs=1e-12)
+        mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, i, read, 0)
+        assert body["velocity"] == pytest.approx(read[3:], abs=1e-12)
+        mujoco.mj_objectAcceleration(model, data, mujoco.mjtObj.mjOBJ_BODY, i, read, 0)
+        # MuJoCo's accelerations are those that an accelerometer shows.
+        assert rates[name] == pytest.approx(read[3:] + model.opt.gravity, abs=1e-9)
+
+
+def test_inertia_of_geometries_is_that_of_their_solids() -> None:
+    """A capsule between the ends of `fromto`: cylinder and two half balls, about its middle."""
+    model = import_model(
+        '<mujoco><worldbody><body name="b"><freejoint/>'
+        '<geom type="capsule" size="0.1" fromto="0 0 0 0 0 2" contype="0" conaffinity="0"/></body></worldbody></mujoco>'
+    )
+    body = model.scene["bodies"]["b"]
+    r, h = 0.1, 2.0
+    cylinder, balls = 1000 * math.pi * r * r * h, 1000 * 4 / 3 * math.pi * r**3
+    along = cylinder * r * r / 2 + balls * 2 / 5 * r * r
+    across = cylinder * (r * r / 4 + h * h / 12) + balls * (2 / 5 * r * r + h * h / 4 + 3 / 8 * h * r)
+    assert body["mass"] == pytest.approx(cylinder + balls, rel=1e-14)
+    assert body["at"] == pytest.approx([0, 0, 1], abs=1e-14)
+    assert body["moments"] == pytest.approx([across, across, along], rel=1e-13)
+
+
+def test_slides_and_a_hinge_in_one_plane_are_a_scene_of_the_plane() -> None:
+    """A body that moves in the plane x, z on a spring: a tendon of stiffness 10, half as long without force."""
+    text = """<mujoco><worldbody><site name="s" pos="0 2 0"/><body name="b" pos="0 2 -1">
+<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 1 0"/>
+<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/><site name="t"/></body></worldbody>
+<tendon><spatial stiffness="10" springlength="0.5"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
+    found, rates = imported(text)
+    assert len(found.scene["gravity"]) == 2
+    assert rates["b"][:2] == pytest.approx((0.0, -9.81 + 10 * 0.5 / 2), abs=1e-15)
+
+
+def test_two_hinges_through_one_point_are_a_universal_joint_and_a_slide_with_a_hinge_is_cylindrical() -> None:
+    def kinds(joints: str) -> list[str]:
+        inertial = '<inertial pos="0 0 -1" mass="1" diaginertia="1 1 1"/>'
+        text = f'<mujoco><worldbody><body name="b">{joints}{inertial}</body></worldbody></mujoco>'
+        return [one["kind"] for one in import_model(text).scene["connections"]]
+
+    assert kinds('<joint axis="1 0 0"/><joint axis="0 1 0"/>') == ["universal"]
+    assert kinds('<joint type="slide" axis="0 0 1"/><joint axis="0 0 1"/>') == ["cylindrical"]
+    assert kinds('<joint type="slide" axis="0 0 1"/><joint type="ball"/>') == ["track"]
+    assert kinds('<joint type="slide"/><joint type="slide" axis="0 1 0"/><joint type="ball"/>') == ["track"]
+
+
+def test_a_ball_above_a_plane_touches_it_and_others_are_left_out() -> None:
+    """It rests; a contact between two bodies is said to be left out."""
+    text = """<mujoco><worldbody><geom type="plane" size="1 1 1" friction="0.4"/>
+<body name="a" pos="0 0 0.1"><freejoint/><geom size="0.1" friction="0.7"/></body>
+<body name="b" pos="3 0 0.1"><freejoint/><geom size="0.1"/></body>
+</worldbody><actuator><motor joint="x"/></actuator></mujoco>"""
+    found, rates = imported(text)
+    assert rates["a"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
+    contacts = {one["place"]: one["friction"] for one in found.scene["connections"]}
+    assert contacts == {"a": 0.7, "b": 1.0}
+    assert [(one.at, one.what) for one in found.left_out] == [(3, "geom"), (4, "motor")]
+
+
+@pytest.mark.parametrize(
+    ("inner", "says"),
+    [
+        ('<body><joint type="twist"/></body>', "line 2: <joint> must be one of"),
+        ('<body><joint/><joint pos="1 0 0"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>', "joints"),
+        ('<body><joint axis="0 0 0"/></body>', "axes other than zero"),
+        ('<body quat="0 0 0 0"><joint/></body>', "quaternion other than zero"),
+        ('<body><joint/><geom type="mesh"/></body>', "give the body an <inertial>"),
+        ('<body><joint/><geom class="c"/></body>', "must name a class"),
+        ('<body><joint/><geom type="box" size="1 -1 1"/></body>', "positive sizes"),
+        ('<body name="b"><joint/></body>', "moves and has no mass"),
+        ('<include file="/etc/passwd"/>', "must be written out"),
+    ],
+)
+def test_what_is_no_model_is_refused_at_its_line(inner: str, says: str) -> None:
+    with pytest.raises(InvalidParameter) as fault:
+        import_model(f"<mujoco><worldbody>\n{inner}</worldbody></mujoco>")
+    assert "line 2" in fault.value.detail
+    assert says in f"{fault.value.detail} {fault.value.remedy}"
+
+
+def test_a_keyframe_has_the_numbers_of_all_joints() -> None:
+    body = '<body><joint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>'
+    for numbers in ("0 0", ""):
+        text = f'<mujoco><worldbody>{body}</worldbody><keyframe>\n<key qpos="{numbers}"/></keyframe></mujoco>'
+        with pytest.raises(InvalidParameter, match="line 2: <key> must have qpos"):
+            import_model(text)
+
+
+def test_velocities_of_a_keyframe_begin_the_motion() -> None:
+    """Euler's equations about the point of a ball joint: J w' = -w x J w, and a = w' x r + w x (w x r)."""
+    text = """<mujoco><worldbody><body name="b"><joint type="ball"/>
+<inertial pos="0.6 0 -0.8" mass="1" diaginertia="0.1 0.1 0.1"/></body></worldbody>
+<option gravity="0 0 0"/><keyframe><key qvel="0 0 3"/></keyframe></mujoco>"""
+    scene = import_model(text).scene
+    r, w = np.array([0.6, 0.0, -0.8]), np.array([0.0, 0.0, 3.0])
+    inertia = 1.1 * np.eye(3) - np.outer(r, r)
+    turn = np.linalg.solve(inertia, -np.cross(w, inertia @ w))
+    assert scene["bodies"]["b"]["velocity"] == pytest.approx([0, 1.8, 0], abs=1e-15)
+    assert accelerations(scene)["b"] == pytest.approx(np.cross(turn, r) + np.cross(w, np.cross(w, r)), abs=1e-13)
