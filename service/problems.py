@@ -205,7 +205,8 @@ REGISTRY: Mapping[str, ProblemType] = {
             "no-room",
             503,
             "Not enough memory for the answer",
-            "Memory or files of the machine are used up. Send the request again in a moment, or request fewer samples.",
+            "With a Retry-After header, memory or files of the machine are used up: send the request again after that "
+            "time. Without one, the answer needs more than a process may take: request fewer samples.",
         ),
         ProblemType(
             "storage-unavailable",

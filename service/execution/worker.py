@@ -131,8 +131,11 @@ def answer(terms: Terms, task: Task) -> Document | Problem | Failed:
     except MechanicsError as error:
         return problem_of(error)
     except MemoryError:
-        detail = f"this answer needs more memory than the machine has, or than {terms.memory} bytes, the limit "
-        return Problem(REGISTRY["no-room"], detail + "compute_memory_bytes", retry_after=1.0)
+        if terms.memory:
+            # The same question would need as much again: nothing says to repeat it.
+            detail = f"this answer needs more than {terms.memory} bytes, the limit compute_memory_bytes"
+            return Problem(REGISTRY["no-room"], f"{detail}: request fewer samples, or less at a time")
+        return Problem(REGISTRY["no-room"], "this answer needs more memory than the machine has now", retry_after=1.0)
     except Exception:
         return Failed(traceback.format_exc())
 

@@ -74,19 +74,20 @@ class Engine:
 
     def turn(self) -> bool:
         """Do what there is to do now, waiting a moment for results; return whether studies are unfinished."""
-        self._follow()
-        if not self._unfinished:
-            time.sleep(TURN)
-            return False
         try:
+            self._follow()
+            if not self._unfinished:
+                time.sleep(TURN)
+                return False
             self._hand_over()
+            self._collect()
+            self._end_overdue()
         except OSError as fault:
+            # A connection may break at any call.
             self._say(TRIED_AGAIN, fault)
             self._cluster.close()
             time.sleep(PAUSE)
             return True
-        self._collect()
-        self._end_overdue()
         for unfinished in [*self._unfinished.values()]:
             if unfinished.done:
                 self._finish(unfinished)
@@ -308,9 +309,12 @@ class Engine:
         finished, unfinished.finishing = unfinished.finishing, None
         try:
             damaged, statistics = finished.result()
-        except Exception as fault:
+        except (OSError, Refusal) as fault:
             self._say("results cannot be read, which is tried again", fault)
             time.sleep(PAUSE)
+            return
+        except Exception as fault:
+            self._fail(unfinished, f"its statistics could not be formed: {type(fault).__name__}")
             return
         for stretch in damaged:
             self._store.drop_chunk(study.id, stretch[0])

@@ -52,11 +52,14 @@ def main() -> None:
         store, files, Cluster(settings, folder / "scratch"), terms_of(settings, table),
         settings.deadline_seconds, settings.answer_seconds,
     )  # fmt: skip
-    work(engine, stopped, settings.study_idle_seconds)
-    threading.Thread(target=_end_in_any_case, daemon=True).start()
-    engine.stop()
-    store.close()
-    ownership.release()
+    try:
+        work(engine, stopped, settings.study_idle_seconds)
+    finally:
+        # Also after a fault: the interpreter would wait for the engine's threads, and the server for this process.
+        threading.Thread(target=_end_in_any_case, daemon=True).start()
+        engine.stop()
+        store.close()
+        ownership.release()
 
 
 def prepare_processes() -> None:

@@ -94,6 +94,9 @@ class Supervisor:
                     await asyncio.to_thread(self.clean)
             except (OSError, Refusal) as fault:
                 LOG.error("the studies cannot be looked after: %s", fault)
+            # Nothing else would start the process again that works on studies: they would be accepted for good.
+            except Exception:
+                LOG.exception("looking after the studies has failed")
             await asyncio.sleep(LOOK_EVERY)
 
     def _look(self) -> list[tuple[Key, float]]:

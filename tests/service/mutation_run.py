@@ -118,8 +118,11 @@ def faults(first: int, stop: int) -> Iterator[tuple[int, str]]:
         for line in done.stdout.splitlines():
             if line.isdigit():
                 first = int(line)
-            else:
+            elif line.startswith('"'):
                 yield first, json.loads(line)
+            else:
+                # Of a library, which would otherwise print it in the middle of a service.
+                yield first, f"printed: {line}"
         if done.returncode:
             yield first, f"the process ended with {done.returncode}: {done.stderr[-1000:]}"
         first += 1

@@ -257,6 +257,7 @@ async def test_memory_is_limited_for_each_process() -> None:
         response = await client.post("/v1/toy", json=filling)
         assert (response.status_code, response.json()["code"]) == (503, "no-room")
         assert "compute_memory_bytes" in response.json()["detail"]
+        assert "retry-after" not in response.headers
         filling["angular_velocity"] = [1e7, 1.0, 1.0]
         assert (await client.post("/v1/toy", json=filling)).status_code == 200
         assert before <= set(running.compute.processes.pids)

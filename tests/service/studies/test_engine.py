@@ -191,6 +191,36 @@ def test_a_scheduler_that_has_gone_is_said(desk_on: Desks, in_process: str, monk
     assert desk.study(identity).status == SUCCESSFUL
 
 
+def test_a_connection_that_breaks_while_processes_are_ended_is_made_again(
+    desk_on: Desks, in_process: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.studies.engine.PAUSE", 0.01)
+    desk = desk_on(in_process, longest=0.0)
+    identity = desk.submit(sleeping(0.05, 20), 1e-6)
+
+    def broken(client: object) -> None:
+        raise ConnectionResetError
+
+    monkeypatch.setattr("distributed.Client.processing", broken)
+    desk.work(until=lambda: desk.study(identity).message)
+    assert desk.cluster.client is None
+    assert TRIED_AGAIN in desk.study(identity).message
+
+
+def test_statistics_that_cannot_be_formed_are_not_tried_for_ever(
+    desk_on: Desks, in_process: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def wrong(*_: object) -> None:
+        raise KeyError
+
+    monkeypatch.setattr("service.studies.engine.summary", wrong)
+    desk = desk_on(in_process)
+    identity = desk.submit(UNIFORM)
+    desk.work()
+    study = desk.study(identity)
+    assert (study.status, study.message) == (FAILED, "its statistics could not be formed: KeyError")
+
+
 def test_a_dismissed_study_lets_its_processes_go(desk_on: Desks, processes: str) -> None:
     desk = desk_on(processes)
     identity = desk.submit(sleeping(60.0, 3), 60.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import signal
@@ -33,6 +34,20 @@ from service.studies.supervisor import Supervisor
 Supervisor(Settings(), {TABLE!r}, Metrics()).ensure()
 time.sleep(300)
 """
+
+FAULTY = f"""
+import sys, threading, time
+from service.studies import runner
+from service.studies.engine import Engine
+
+def turn(engine):
+    threading.Thread(target=time.sleep, args=(300,)).start()
+    raise KeyError
+
+Engine.turn, runner.GRACE, sys.argv[1:] = turn, 0.1, [{TABLE!r}]
+runner.main()
+"""
+"""A process whose engine fails, with a thread for which the interpreter would wait."""
 
 STUDY = sleeping(0.01, 200)
 
@@ -87,3 +102,38 @@ async def test_what_is_owned_by_another_process_is_left_to_it(tmp_path: Path) ->
     supervisor.ensure()
     await supervisor.stop()
     assert ownership.acquire() is False
+
+
+def test_a_process_that_has_failed_ends_whatever_its_threads_do(tmp_path: Path) -> None:
+    """Its server waits for its end before it starts another."""
+    environment = {**os.environ, "POLHODE_DATA": str(tmp_path), "POLHODE_DASK": "tcp://127.0.0.1:1"}
+    done = subprocess.run(
+        [sys.executable, "-c", FAULTY], cwd=ROOT, env=environment, stdin=subprocess.PIPE, capture_output=True,
+        timeout=PATIENCE, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert not Ownership(tmp_path).taken
+
+
+@pytest.mark.anyio
+async def test_studies_are_looked_after_again_whatever_has_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A process that works on studies and is killed would otherwise be missed for good."""
+    monkeypatch.setattr("service.studies.supervisor.LOOK_EVERY", 0.01)
+    supervisor, again = Supervisor(Settings(data=str(tmp_path)), TABLE, Metrics()), asyncio.Event()
+    loop, looks = asyncio.get_running_loop(), 0
+
+    def unfinished() -> list[object]:
+        nonlocal looks
+        looks += 1
+        if looks == 1:
+            raise RuntimeError
+        loop.call_soon_threadsafe(again.set)
+        return []
+
+    monkeypatch.setattr(supervisor.store, "unfinished", unfinished)
+    watch = asyncio.create_task(supervisor.watch())
+    await asyncio.wait_for(again.wait(), PATIENCE)
+    watch.cancel()
+    await asyncio.gather(watch, return_exceptions=True)
