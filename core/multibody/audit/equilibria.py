@@ -14,6 +14,8 @@ L. Meirovitch, "Methods of Analytical Dynamics", 1970, chapter 5.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import combinations
+from math import hypot
 from random import Random
 
 import numpy as np
@@ -32,7 +34,10 @@ MOST_LINEARISED = 16
 """Equilibria whose modes are compared."""
 
 STEP = 2.0**-12
-"""Change of places by which rates are formed, in units of the scene."""
+"""Change of places by which rates are formed, as a share of the shortest length of the scene."""
+
+SHORTEST = 2.0**-26
+"""Share of the longest length below which two places of a connection are at one: their distance is rounding."""
 
 ROOTS_KNOWN = 1e-8
 """Share to which the product over all roots is known at least: that of the rates, 1e-10, and some products."""
@@ -210,7 +215,8 @@ def _linear(
     free = _complement(_holding(description, freedoms, sample.placement, sample.motion)[:, :, 0])
     if free is None or not len(free):
         return None
-    step, count = STEP * (description.extent or 1.0), len(free)
+    (shortest, away), count = _lengths(description, sample.placement), len(free)
+    step = STEP * shortest
     still = np.zeros((1, freedoms.count))
     changes = np.concatenate([still, *(step * s * free for s in STENCIL), 0.0 * free, 0.0 * free])
     rates = np.concatenate([still, *(0.0 * free for _ in STENCIL), free, -free])
@@ -230,7 +236,8 @@ def _linear(
     largest = float(np.abs(stiffness).max())
     share = np.inf
     if largest > 0.0:
-        noise = ROUNDING * float(balanced.size.max(initial=0.0) + np.abs(values).sum()) / step
+        # Lengths are differences of coordinates, each rounded.
+        noise = ROUNDING * away * float(balanced.size.max(initial=0.0) + np.abs(values).sum()) / step
         share = noise / largest + CURVED * (float(np.abs(stiffness - roughly).max()) / largest) ** 2
     first = 1 + 4 * count
     damping = (found[:, first : first + count] - found[:, first + count :]) / 2.0
@@ -243,6 +250,26 @@ def _linear(
     if np.abs(damping).max() <= ROUNDING * np.abs(found).max():
         damping = np.zeros_like(damping)
     return (free * masses) @ free.T, damping, stiffness, share
+
+
+def _lengths(description: Description, placement: Placement) -> tuple[float, float]:
+    """Return the shortest length by which forces change their directions (m), and coordinates in units of it.
+
+    However far from the origin a scene is, rates are formed by changes that are small beside its own lengths.
+    """
+    connections = description.connections
+    own = [connection.reach for connection in connections if connection.reach > 0.0]
+    arms = (hypot(*place.offset) for connection in connections for place in connection.places if place.body is not None)
+    own += [arm for arm in arms if arm > 0.0]
+    between = [
+        float(np.linalg.norm(a.at(placement) - b.at(placement)))
+        for connection in connections
+        for a, b in combinations(connection.places, 2)
+    ]
+    longest = max([*own, *between], default=0.0)
+    shortest = min([*own, *(x for x in between if x > SHORTEST * longest)], default=description.extent or 1.0)
+    placed = max(float(np.abs(pose.position).max()) for pose in placement.values())
+    return shortest, max(1.0, max(placed, description.extent) / shortest)
 
 
 def _beside(

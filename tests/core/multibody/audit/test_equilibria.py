@@ -13,6 +13,8 @@ from core.multibody.answer import Equilibrium
 from core.multibody.solve import solve_scene
 from tests.core.multibody.audit.spoiled import Audited, answered, description_of
 from tests.core.multibody.random_scenes import any_scene
+from tests.core.multibody.relations.geometry import dimension
+from tests.core.multibody.relations.geometry import moved as moved_as_a_whole
 from tests.core.multibody.worked_examples import read
 
 RESTING = (
@@ -92,6 +94,46 @@ def test_wrong_equilibria_are_refused(kind: str) -> None:
 @pytest.mark.parametrize("seed", range(0, 40, 5))
 def test_equilibria_of_random_scenes_pass(seed: int) -> None:
     solve_scene(read(any_scene(seed)), np.zeros(0), ("equilibria",))
+
+
+FAR = ("coupled-pendulums", "double-pendulum-of-points", "elastic-pendulum", "physical-pendulum", "spherical-pendulum")
+
+
+SEEN = {
+    "1e3": ("modes that are stable grow", "modes are too quick by a hundred thousandth"),
+    "-1e6": ("modes that are stable grow",),
+    "1e8": (),
+}
+"""What is wrong with answers so far away by more than coordinates are rounded."""
+
+
+@pytest.mark.parametrize("by", SEEN)
+@pytest.mark.parametrize("scene", FAR)
+def test_equilibria_far_from_the_origin_pass_and_wrong_ones_are_refused(scene: str, by: str) -> None:
+    """Lengths decide by how much places are changed, and not coordinates."""
+    description = description_of(scene)
+    transformed = moved_as_a_whole(description, [by, "0.25", "0.5"][: dimension(description)])
+    assert transformed is not None
+    one = answered(transformed.request, (), ("equilibria",))
+    assert one.failure() is None
+    for kind in SEEN[by]:
+        spoiled = tuple(map(SPOILED[kind], one.answer.equilibria or ()))
+        assert replace(one, answer=replace(one.answer, equilibria=spoiled)).failure() is not None
+
+
+@pytest.mark.parametrize("length", [1e4, 1e6])
+def test_lengths_of_a_million_beside_those_of_one_pass(length: float) -> None:
+    """Pendulums on rods of a million metres with a spring of one, and pendulums of a metre on a spring of a million."""
+    long = description_of("coupled-pendulums")
+    long["bodies"]["left"]["at"], long["bodies"]["right"]["at"] = [length + 0.6, -0.8], [length + 1.0, -1.0]
+    apart = description_of("coupled-pendulums")
+    apart["bodies"]["right"]["at"] = [length + 1.0, -1.0]
+    apart["connections"][1]["b"] = [length + 1.0, 0]
+    apart["connections"][2]["rest_length"] = length
+    for scene in (long, apart):
+        one = answered(scene, (), ("equilibria",))
+        assert one.answer.equilibria
+        assert one.failure() is None
 
 
 def test_the_period_of_a_top_passes_without_accelerations() -> None:
