@@ -140,6 +140,9 @@ def polished(problem: Problem, numbers: Floats) -> tuple[Floats, Floats, Floats]
         cost = problem.cost(residuals)
         weights = np.sqrt(problem.rho(residuals**2)[1])[:, None]
         scaled = np.where(held, 0.0, slopes * problem.scales) * weights
+        if not (np.isfinite(scaled).all() and np.isfinite(residuals).all()):
+            # LAPACK would write to the standard output of the service.
+            raise OverflowError("the slopes leave the range of doubles")
         change = -np.linalg.lstsq(scaled, residuals * weights[:, 0], rcond=problem.slope_error)[0]
         length = float(np.linalg.norm(scaled @ change))
         after = np.clip(numbers + change * problem.scales, problem.lower, problem.upper)

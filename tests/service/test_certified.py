@@ -427,3 +427,13 @@ def test_over_a_socket_from_a_compute_process(server: Server) -> None:
     assert found.status_code == 200
     assert len(found.json()["angular_velocity"]) == 200
     assert httpx.post(server.url + TRAJECTORY, json=question, timeout=PATIENCE).content == found.content
+
+
+@pytest.mark.parametrize("time", ["1e-310", "3e153", "1e155"])
+async def test_digits_are_answered_where_squares_of_the_places_are_no_doubles(time: str) -> None:
+    """The fall is exact; its check in doubles, which cannot be made there, withheld it."""
+    scene = {"gravity": [0, "-9.75"], "bodies": {"stone": {"mass": 1, "at": [0, 0]}}, "times": [time], "digits": 20}
+    columns = (await answer("/v1/certified/scenes", scene))["trajectory"]["columns"]
+    ((_, fallen),) = columns["stone.position"]["values"]
+    with mp.workdps(40):
+        assert abs(mpf(fallen) / (mpf("-4.875") * mpf(time) ** 2) - 1) < mpf("1e-19")

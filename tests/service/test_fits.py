@@ -145,3 +145,10 @@ async def test_numbers_that_are_none_and_too_few_of_them() -> None:
     answer = (await sent(few)).json()
     assert answer["errors"][0]["pointer"] == "/data/columns"
     assert "2 for 3" in answer["detail"]
+
+
+async def test_a_fit_that_leaves_the_range_of_doubles_writes_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    """LAPACK writes a line of its own to the standard output about numbers that are none."""
+    response = await sent(changed(["data", "columns", "y", 6], -1.2399499703911948e16))
+    assert (response.status_code, response.json()["errors"][0]["pointer"]) == (422, "/data/columns")
+    assert not capfd.readouterr().out

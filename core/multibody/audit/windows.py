@@ -57,6 +57,8 @@ _SIZES = np.abs(_DIFFERENCES).sum(axis=1)[:, None]
 _STEEPEST = float(NODES**2)
 """Largest rate of the first term that is left out."""
 _LEAST = float(np.finfo(float).tiny)
+_UNDERFLOW = float(np.finfo(float).smallest_subnormal)
+"""What a double is rounded by at least, however small it is: a place after 1e-310 s is none."""
 
 
 def nodes(middle: float, half: float) -> Numbers:
@@ -92,7 +94,8 @@ class Windows:
         parted = values.reshape(len(self.half), NODES, -1)
         found = _DIFFERENCES @ parted / self.half
         terms = np.sqrt(np.add.reduceat((_COEFFICIENTS @ parted) ** 2, starts, axis=2))
-        noise = errors + self.rounding * np.maximum.reduceat(np.abs(parted).max(axis=1, keepdims=True), starts, axis=2)
+        sizes = np.maximum.reduceat(np.abs(parted).max(axis=1, keepdims=True), starts, axis=2)
+        noise = errors + self.rounding * sizes + _UNDERFLOW
         seen = np.maximum(terms, noise)
         # The slowest decay from one coefficient to the next of its parity, down to where they are noise.
         ratios = seen[:, 3:] / np.maximum(seen[:, 1:-2], _LEAST)
