@@ -339,6 +339,7 @@ TESTED_IN |= {
         "formulation/notation/names formulation/notation/plain",
         "table/test_formulas_of_time": "audit/driven table/moving_places",
         "table/test_joints_of_space": "audit/joints_of_space",
+        "table/test_curves": "audit/curves",
         "table/test_turns_in_space": "audit/turns_in_space",
         "laws/test_formulas_of_pieces": (
             "equations/starting_pieces laws/corners language/switches phases/formula_ends table/law_pieces"

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from core.formulas import Arithmetic, Node, names_of, value_of
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, angle, spin_of
+from core.multibody.audit.placement import STEP, Motion, Numbers, Place, Placement, angle, spin_of
 from core.multibody.language.motion_formulas import LENGTH, TIME, TURNS, motion_formula
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.switches import SWITCHING, argument_of, switches_of
@@ -118,6 +118,19 @@ class FormulaValue:
     def value(self, placement: Placement, motion: Motion) -> Numbers:
         """Return the value, shape ()."""
         return self._of({name: np.asarray(read(placement, motion)) for name, read in self.inputs.items()})
+
+    def value_with(self, given: Mapping[str, Numbers], placement: Placement) -> Numbers:
+        """Return the value with some inputs in place of those that a placement has, shape ()."""
+        others = {name: np.asarray(read(placement, {})) for name, read in self.inputs.items() if name not in given}
+        return self._of({**others, **{name: value for name, value in given.items() if name in self.inputs}})
+
+    def slope(self, name: str, placement: Placement) -> Numbers:
+        """Return the change of the value by that of an input alone, shape ()."""
+        if name not in self.inputs:
+            return np.zeros(())
+        value = np.asarray(self.inputs[name](placement, {}))
+        found: Numbers = self.value_with({name: value.real + 1j * STEP}, placement).imag / STEP
+        return found
 
     def size(self, placement: Placement, size: float, speed: float) -> Numbers:
         """Return how large the terms are in which the inputs enter, at states of some size and speed."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.multibody.audit.bodies import Path, Reader
+from core.multibody.audit.curves import track_by_formula
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.driven import DrivenRod, DrivenSlider
@@ -88,6 +89,9 @@ def rod(connection: Rod, reader: Reader, name: str, path: Path) -> Definition:
 def track(connection: GuideCurve, reader: Reader, name: str, path: Path) -> Definition:
     """Return the definition of a track."""
     where, on = (*path, "on"), connection.on
+    by_formula = track_by_formula(connection, reader, name, path)
+    if by_formula is not None:
+        return by_formula
     place, at = reader.place(connection.place, (*path, "place")), reader.place(on["at"], (*where, "at"))
     bodies = (*place.bodies, *at.bodies)
     if is_rubbing(connection, reader, name, path):

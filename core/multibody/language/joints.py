@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 from core.errors import Path
-from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, carrier_of
+from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, carrier_of, listed
 from core.multibody.language.written import GROUND, Angle, Direction, Length, Number, Place, Ratio, Surface, Vector
 
 
@@ -155,8 +155,10 @@ class GuideCurve(Connection):
     """A place stays on a curve or surface.
 
     `on` is a line ``{at, slope}`` (in space ``{at, direction}``), a circle or sphere ``{at, radius}``, a parabola
-    ``{at, curvature, slope}`` (y = curvature x^2/2 from its vertex), in space a plane ``{at, normal}``. On a line or
-    circle of the plane it may rub, with `friction`: one coefficient or two, that of sticking first.
+    ``{at, curvature, slope}`` (y = curvature x^2/2 from its vertex), in space a plane ``{at, normal}``. By formula it
+    is a ``{surface}`` on which a function of x, y and z is zero, or a ``{curve, start}``: components by a parameter u,
+    and a guess of that at the start. These formulas may have the time t.
+    On a line or circle of the plane it may rub, with `friction`: one coefficient or two, that of sticking first.
     """
 
     place: Place
@@ -173,6 +175,10 @@ class GuideCurve(Connection):
     def places(self) -> Iterable[object]:
         """See `Connection.places`."""
         return (self.place, carrier_of(self.on))
+
+    def formulas(self) -> Iterable[object]:
+        """See `Connection.formulas`."""
+        return (self.on.get("surface"), *listed(self.on.get("curve"))) if isinstance(self.on, Mapping) else ()
 
     def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
         """See `Connection.aspects`."""

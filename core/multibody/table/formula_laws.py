@@ -41,7 +41,11 @@ def written(measures: Measures, value: object, own: Own | Sequence[str], path: P
     found = formula_at(measures, value, own, path)
     if found is not None:
         return found
-    number = measures.numerals.number(value, path)
+    return of_number(measures.numerals.number(value, path))
+
+
+def of_number(number: Ball) -> MotionFormula:
+    """Return the formula of a number."""
     return MotionFormula(Node("number", number.str(_DIGITS, radius=False)), frozenset())
 
 

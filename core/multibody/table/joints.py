@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from core.balls import as_text
 from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.multibody.algebra.directions import perpendicular
 from core.multibody.algebra.polynomials import ONE, ZERO, constant, difference, dot, evaluated
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.written import GROUND
+from core.multibody.table.curves import on_curve_by_formulas, on_surface
 from core.multibody.table.formulas_of_time import driven
 from core.multibody.table.guides import rubbing_slider, rubbing_track, rubs
 from core.multibody.table.measures import CLOSE, Measures
@@ -113,6 +116,11 @@ def weld(connection: Weld, measures: Measures, name: str, path: Path) -> None:
 @add_rows.register
 def track(connection: GuideCurve, measures: Measures, name: str, path: Path) -> None:
     """Hold a place on a curve or surface."""
+    given = connection.on if isinstance(connection.on, Mapping) else {}
+    for kind, form in (("surface", on_surface), ("curve", on_curve_by_formulas)):
+        if kind in given:
+            form(measures, name, connection, path)
+            return
     if rubs(measures, connection, path):
         rubbing_track(measures, name, connection, path)
         return

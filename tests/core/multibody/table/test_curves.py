@@ -1,0 +1,118 @@
+"""Beads on surfaces and curves by formula, against closed forms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.errors import InvalidParameter
+from core.multibody.answer import SceneSolution
+from core.multibody.language.reading import scene_from
+from core.multibody.solve import solve_scene
+
+G = 10.0
+TIMES = np.array([0.0, 0.3, 1.0])
+
+
+def solved(at: Sequence[Any], on: dict[str, Any], **body: Any) -> SceneSolution:
+    track = {"kind": "track", "name": "wire", "place": "bead", "on": on}
+    gravity = [*[0] * (len(at) - 1), -G]
+    scene = {"gravity": gravity, "bodies": {"bead": {"mass": 2, "at": at, **body}}, "connections": [track]}
+    return solve_scene(scene_from(scene), TIMES, ("accelerations", "forces", "trajectory", "forces-in-time"))
+
+
+def columns(found: SceneSolution, *names: str) -> list[Any]:
+    assert found.trajectory is not None
+    return [found.trajectory.columns[name].values for name in names]
+
+
+@pytest.mark.parametrize("angle", ["1/100", "1", "5/2"])
+def test_a_cycloid_has_one_period_whatever_the_amplitude(angle: str) -> None:
+    """Of x = u + sin u, y = -cos u the arc 4 sin(u/2) swings harmonically with sqrt(g)/2 (Huygens 1673)."""
+    found = solved([f"{angle} + sin({angle})", f"-cos({angle})"], {"curve": ["u + sin(u)", "-cos(u)"]})
+    assert found.period == pytest.approx(4 * np.pi / np.sqrt(G), rel=1e-15)
+    assert found.model.name == "one period"
+    arc = 4 * np.sin(eval(angle) / 2) * np.cos(np.sqrt(G) / 2 * TIMES)
+    (place,) = columns(found, "bead.position")
+    np.testing.assert_allclose(place[:, 1], -np.cos(2 * np.arcsin(arc / 4)), atol=1e-13)
+
+
+def test_a_bead_slides_along_a_helix() -> None:
+    """With a rise of 3/4 m by a radian at a radius of 1 m its angle has -(3/4) g/(1 + 9/16) = -4.8 rad/s^2."""
+    found = solved([1, 0, 0], {"curve": ["cos(u)", "sin(u)", "3*u/4"]})
+    u, rate = -2.4 * TIMES**2, -4.8 * TIMES
+    place, x, y, z = columns(found, "bead.position", "wire.x", "wire.y", "wire.z")
+    np.testing.assert_allclose(place, np.stack([np.cos(u), np.sin(u), 0.75 * u], axis=1), atol=1e-13)
+    pull = [2 * (-4.8 * -np.sin(u) - rate**2 * np.cos(u)), 2 * (-4.8 * np.cos(u) - rate**2 * np.sin(u))]
+    np.testing.assert_allclose([x, y], pull, atol=1e-11)
+    np.testing.assert_allclose(z, 2 * (G - 0.75 * 4.8), atol=1e-11)
+
+
+def test_a_bead_circles_in_a_paraboloid() -> None:
+    """On z = x^2 + y^2 a circle is kept at sqrt(2 g) rad/s, whatever its radius, by the force m g (-2x, -2y, 1)."""
+    rate = np.sqrt(2 * G)
+    found = solved([1.5, 0, 2.25], {"surface": "z - x^2 - y^2"}, velocity=[0, "3*sqrt(20)/2", 0])
+    place, x, z = columns(found, "bead.position", "wire.x", "wire.z")
+    circle = [1.5 * np.cos(rate * TIMES), 1.5 * np.sin(rate * TIMES), np.full(3, 2.25)]
+    np.testing.assert_allclose(place, np.transpose(circle), atol=1e-12)
+    np.testing.assert_allclose(x, -4 * G * place[:, 0], atol=1e-10)
+    np.testing.assert_allclose(z, 2 * G, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    "on", [{"surface": "y - x^2"}, {"curve": ["u", "u^2"]}, {"curve": ["2*u", "4*u^2"], "start": 2}]
+)
+def test_a_parabola_is_that_of_the_language(on: dict[str, Any]) -> None:
+    known = solved([1, 1], {"at": [0, 0], "curvature": 2})
+    found = solved([1, 1], on)
+    for name in ("bead.position", "wire.x", "wire.y"):
+        np.testing.assert_allclose(*(columns(one, name)[0] for one in (found, known)), atol=1e-12)
+
+
+@pytest.mark.parametrize("on", [{"surface": "y - sin(3*t)/5 - x"}, {"curve": ["u", "u + sin(3*t)/5"]}])
+def test_a_wire_that_shakes_carries_its_bead(on: dict[str, Any]) -> None:
+    """Along the slope of 45 degrees acts -(g + y'')/2 of the wire: x'' = -5 + 0.9 sin(3t), x'(0) = -0.3."""
+    found = solved([0, 0], on)
+    (place,) = columns(found, "bead.position")
+    x = -2.5 * TIMES**2 - np.sin(3 * TIMES) / 10
+    np.testing.assert_allclose(place[:, 0], x, atol=1e-13)
+    np.testing.assert_allclose(place[:, 1], x + np.sin(3 * TIMES) / 5, atol=1e-13)
+
+
+def test_start_chooses_among_parameters_of_one_place() -> None:
+    """Where a figure eight crosses itself the bead starts along the branch of the parameter that is nearest."""
+    for start, side in (("pi/2", -1), ("3*pi/2", 1)):
+        found = solved([0, 0], {"curve": ["cos(u)", "sin(2*u)/2"], "start": start})
+        assert found.accelerations is not None
+        assert found.accelerations["bead"].linear[0] == pytest.approx(side * G / 2)
+
+
+def test_where_a_curve_loses_its_direction_the_motion_ends() -> None:
+    """By u^3 a parabola has none at u = 0, which the bead reaches."""
+    found = solved([1, 1], {"curve": ["u^3", "u^6"], "start": 2})
+    assert found.ended is not None
+    assert found.ended.kind == "singular"
+
+
+@pytest.mark.parametrize(
+    ("at", "on", "pointer", "rule"),
+    [
+        ([1, 1], {"surface": "y - x^3/2"}, ("surface",), "be zero where the place starts"),
+        ([1, 1], {"surface": "3"}, ("surface",), "be a formula of x, y"),
+        ([1, 1], {"surface": "y - v"}, ("surface",), "known names"),
+        ([1, 1], {"surface": "y - x", "at": [0, 0]}, (), "nothing beside surface"),
+        ([1, 1], {"curve": ["u", "u^3/2"]}, ("curve",), "pass through the place"),
+        ([0, 0], {"curve": ["u^3", "u^2"]}, ("curve",), "in a direction"),
+        ([1, 1], {"curve": ["u"]}, ("curve",), "a list of 2 formulas"),
+        ([1, 1], {"curve": [1, "2"]}, ("curve",), "have formulas of u"),
+        ([1, 1], {"curve": ["u", "bead.x"]}, ("curve", 1), "known names"),
+        ([1, 1], {"curve": ["u", "u"], "slope": 1}, (), "nothing beside curve and start"),
+    ],
+)
+def test_what_is_no_track_is_refused(at: list[Any], on: dict[str, Any], pointer: tuple[Any, ...], rule: str) -> None:
+    with pytest.raises(InvalidParameter, match=rule) as refused:
+        solved(at, on)
+    assert refused.value.path == ("connections", 0, "on", *pointer)
