@@ -316,9 +316,9 @@ TESTED_IN |= {
         ),
         "audit/test_definitions": (
             "audit/between_places audit/bodies audit/coefficients audit/contact_definitions audit/contacts "
-            "audit/definition audit/guides "
+            "audit/chains audit/definition audit/guides "
             "audit/definition_of audit/joint_definitions audit/joints audit/law_definitions audit/laws "
-            "audit/newton audit/placement audit/rolling audit/string_definitions audit/strings "
+            "audit/newton audit/placement audit/rolling audit/string_definitions audit/string_runs audit/strings "
             "audit/surfaces"
         ),
         "assembly/test_assembled_scene": (

@@ -8,20 +8,15 @@ from itertools import pairwise
 import numpy as np
 
 from core.multibody.audit.bodies import Path, Reader
+from core.multibody.audit.chains import ChainDefinition
 from core.multibody.audit.coefficients import touch_of
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
 from core.multibody.audit.driven import DrivenString
 from core.multibody.audit.formula_definitions import value_or_formula
 from core.multibody.audit.placement import length
-from core.multibody.audit.strings import (
-    ChainDefinition,
-    RubbingString,
-    StringDefinition,
-    StringPoint,
-    StringRun,
-    run_of,
-)
+from core.multibody.audit.string_runs import StringPoint, StringRun, run_of
+from core.multibody.audit.strings import RubbingString, StringDefinition
 from core.multibody.language.strings import Chain, String
 
 

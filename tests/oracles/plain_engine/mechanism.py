@@ -14,13 +14,15 @@ import numpy as np
 
 from core.multibody.audit.between_places import BetweenPlaces
 from core.multibody.audit.bodies import Reader
+from core.multibody.audit.chains import ChainDefinition
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.guides import Side
 from core.multibody.audit.joints import RodDefinition
 from core.multibody.audit.outlines import OnOutline
 from core.multibody.audit.placement import STEP, Measure, Motion, Numbers, Placement, rate, with_rate
-from core.multibody.audit.strings import ChainDefinition, Straight, StringDefinition
+from core.multibody.audit.string_runs import Straight
+from core.multibody.audit.strings import StringDefinition
 from core.multibody.audit.turns_in_space import AxialStop
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 
