@@ -278,6 +278,7 @@ TESTED_IN |= {
     f"core/fits/{name}.py": "core/fits/test_fit.py"
     for name in ("comparison", "computed", "model", "problem", "search", "statistics", "wording")
 }
+TESTED_IN["core/multibody/reduction/least_places.py"] = "core/multibody/phases/test_passing_touch.py"
 TESTED_IN["core/fits/unknowns.py"] = "service/test_fits.py"
 TESTED_IN["core/assessment/typed_number.py"] = "core/assessment/test_typed_entry.py"
 TESTED_IN["core/assessment/typed_signs.py"] = "core/assessment/test_typed_entry.py"

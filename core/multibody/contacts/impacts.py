@@ -286,7 +286,9 @@ def _group(
         if not any(alike(then, other, rates) for _, other in different):
             different.append((described, then))
     if len(different) == 1 and (
-        len(group) <= _MOST_ORDERED or _ends_alike(unilateral, group, *_without_width(rates, found))
+        len(group) <= _MOST_ORDERED
+        or _only_close(unilateral, group, rates, found)
+        or _ends_alike(unilateral, group, *_without_width(rates, found))
     ):
         return at_once
     return Problem(
@@ -299,6 +301,20 @@ def _group(
         ),
         'the order in which they happen, as "order" of the contacts, equal where they act together',
     )
+
+
+def _only_close(unilateral: Sequence[Unilateral], group: Sequence[int], rates: RatesByLine, found: Responses) -> bool:
+    """Return whether every order of impacts ends with all contacts closed: nothing bounces, opens, or is opened.
+
+    Where an impulse on one gap closes all others, or leaves them, rates that are not positive remain so until none is
+    left. Impulses that leave no rate along any gap have one outcome: the part of the motion that is free.
+    """
+    normals, rubs = [found.normal[i] for i in group], [b for i in group for b in found.grip(i)]
+    if not all(is_zero(unilateral[i].restitution) for i in group) or not all(is_zero(rates[b]) for b in rubs):
+        return False
+    beside = [found.matrix[a][b] for a in normals for b in normals if a != b]
+    across = [found.matrix[a][b] for a in normals for b in rubs]
+    return all(not x > 0 for x in [*beside, *(rates[a] for a in normals)]) and all(map(is_zero, across))
 
 
 def _ends_alike(unilateral: Sequence[Unilateral], group: Sequence[int], rates: RatesByLine, found: Responses) -> bool:

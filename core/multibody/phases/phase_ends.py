@@ -10,7 +10,7 @@ from functools import partial
 from flint import arb
 
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import Ball, evaluated, is_zero
+from core.multibody.algebra.polynomials import Ball, evaluated, gradient, is_zero
 from core.multibody.contacts.contact_states import State, phase_table
 from core.multibody.contacts.projection import project
 from core.multibody.equations.expansion import Series
@@ -23,6 +23,7 @@ from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.phases.uniform_pieces import ExpandedUniform
 from core.multibody.phases.watches import Crossing, Watch, lengths, switches, watches
+from core.multibody.reduction.least_places import turns_back_at_zero
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.followed import Found
@@ -200,7 +201,10 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
     if one.width > 0.0 and watch.what == "length":
         raise SingularPlace(arb(one.time), one.width, watch.one.name)
     if one.width > 0.0:
-        raise Undecided(Graze(arb(one.time, one.width), watch))
+        turned = _turned_back(phase, expansions.places, watch, one.time, left)
+        if not turned:
+            raise Undecided(Graze(arb(one.time, one.width), watch))
+        return turned
     try:
         crossings = _located(phase, expansions.by(watch.watched), watch, one, left)
     except NotLocated:
@@ -215,6 +219,18 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
     if crossings[0].time > left:
         return []
     return crossings if one.unsure == 0.0 else _unsure(phase, expansions.places, crossings[0], one.unsure, left)
+
+
+def _turned_back(phase: Phase, motions: Sequence[Expanded], watch: Watch, time: float, left: float) -> list[Crossing]:
+    """Return where a gap turns back exactly at zero, on both tracks; nothing where that is not known."""
+    gap = watch.one.gap
+    near = state_at(motions[0], time, left)[0]
+    if watch.what != "gap" or not turns_back_at_zero(phase.tables[0].table, gap, near):
+        return []
+    slope = gradient(gap)
+    states = [located(motion, lambda pieces: pieces.of_rates(slope), time, 0.0, left) for motion in motions]
+    crossings = [Crossing(one.time, watch, one.q, one.v) for one in states]
+    return crossings if len(crossings) > 1 else crossings * 2
 
 
 def _unsure(phase: Phase, motions: Sequence[Expanded], first: Crossing, unsure: float, left: float) -> list[Crossing]:

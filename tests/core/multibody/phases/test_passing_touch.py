@@ -99,3 +99,68 @@ def test_a_platform_hangs_on_parallel_rods_above_a_floor_that_it_touches() -> No
     free = moved()
     assert max(free.values()) > 0.51
     assert moved(contact) == pytest.approx(free, abs=1e-12)
+
+
+def _plane(x: int, scale: str, sides: tuple[int, int, int] | None) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return a pendulum from its side above a floor at its lowest place, moved, scaled and turned; and the floor."""
+    rod = {"kind": "rod", "a": "p", "b": [x, 0]}
+    contact = {"kind": "contact", "name": "c", "place": "p", "on": {"at": [x, f"-({scale})"]}, "restitution": 0.5}
+    body = {"mass": 1, "at": [f"{x} + {scale}", 0]}
+    scene = {"gravity": [0, -10], "bodies": {"p": body}, "connections": [rod, contact], "times": [1]}
+    if sides is not None:
+        turned = geometry.turned(scene, sides=sides)
+        assert turned is not None
+        scene = turned.request
+    del scene["times"]
+    return scene, scene["connections"][1]
+
+
+@pytest.mark.parametrize("sides", [None, (3, 4, 5), (5, 12, 13)])
+@pytest.mark.parametrize(("x", "scale"), [(0, "1"), (0, "1e-3"), (0, "1e3"), (1000, "1")])
+def test_a_pendulum_passes_a_floor_that_touches_its_path(
+    x: int, scale: str, sides: tuple[int, int, int] | None
+) -> None:
+    scene, contact = _plane(x, scale, sides)
+    times = np.linspace(0.0, 3.0, 7) * np.sqrt(float(scale))
+    found = solve_scene(read(scene), times, OUTPUTS)
+    free = {**scene, "connections": [one for one in scene["connections"] if one is not contact]}
+    alone = solve_scene(read(free), times, OUTPUTS)
+    assert found.events == ()
+    assert found.trajectory is not None
+    assert alone.trajectory is not None
+    own, other = found.trajectory.columns["p.position"], alone.trajectory.columns["p.position"]
+    np.testing.assert_allclose(own.values, other.values, rtol=0, atol=own.error + other.error)
+
+
+def test_a_floor_that_is_hardly_higher_or_lower_is_no_such_floor() -> None:
+    for apart, kinds in (("1e-20", ["touch"]), ("-1e-20", [])):
+        scene, contact = _plane(0, "1", None)
+        contact["on"]["at"] = [0, f"-1 + {apart}"]
+        assert [event.kind for event in solve_scene(read(scene), [0.7], OUTPUTS).events] == kinds
+
+
+def test_rods_and_plates_pass_such_a_floor_in_the_plane_and_in_space() -> None:
+    pin, below = {"kind": "pin", "a": "p.t", "b": [0, 0]}, {"at": [0, -2]}
+    floor = {"kind": "contact", "name": "c", "place": "p.e", "on": below}
+    far = {"kind": "contact", "name": "far", "place": "ball", "on": below, "restitution": 0.5}
+    places = {"t": ["-1", 0], "e": ["1", 0]}
+    rod = {"mass": 2, "inertia": "1/6", "at": [1, 0], "places": places}
+    other = {"mass": 1, "at": [50, 3]}
+    plane = {
+        "gravity": [0, -10],
+        "bodies": {"p": rod, "ball": other},
+        "connections": [pin, floor, far],
+    }
+    plate = {"mass": 1, "moments": [0.1, 0.2, 0.3], "at": [0, 0, -1], "angular_velocity": [0, 1, 0]}
+    space = {
+        "gravity": [0, 0, -10],
+        "bodies": {"p": {**plate, "velocity": [-1, 0, 0], "places": {"t": [0, 0, 1]}}},
+        "connections": [
+            {"kind": "pin", "a": "p.t", "b": [0, 0, 0], "axis": [0, 1, 0]},
+            {"kind": "contact", "name": "c", "place": "p", "on": {"at": [0, 0, -1], "normal": [0, 0, 1]}},
+        ],
+    }
+    for scene in (plane, space):
+        answer = solve_scene(read(scene), [3], OUTPUTS)
+        assert answer.ended is None
+        assert not any(event.name == "c" for event in answer.events)
