@@ -562,3 +562,38 @@ def test_what_has_landed_flat_has_no_spin_to_the_last_digit(sides: tuple[int, in
     answer = solve_scene(read({key: x for key, x in turned.items() if key != "times"}), [0.5])
     spin = column(answer, "p.angular_velocity")
     assert np.abs(spin.values).max() <= spin.error
+
+
+@pytest.mark.parametrize("friction", [0, 0.3])
+@pytest.mark.parametrize(("count", "along", "slope"), [(5, ("0", "1"), "0"), (6, ("3/5", "4/5"), "atan(4/3) - pi/2")])
+def test_a_stack_that_lands_without_bouncing_stops(
+    count: int, along: tuple[str, str], slope: str, friction: float
+) -> None:
+    """Each impulse closes the gaps beside it, so that every order of them ends with all discs at rest.
+
+    Their rates in between are without end; what is answered is the sum of the momenta below each gap.
+    """
+    x, y = along
+    bodies = {
+        f"d{i}": {
+            "mass": i + 1,
+            "inertia": 1,
+            "radius": 1,
+            "at": [f"{1 + 2 * i}*{x}", f"{1 + 2 * i}*{y}"],
+            "velocity": [f"-3*{x}", f"-3*{y}"],
+        }
+        for i in range(count)
+    }
+    contacts: list[dict[str, Any]] = [
+        {"kind": "contact", "name": "c0", "place": "d0", "on": {"at": [0, 0], "slope": slope}}
+    ]
+    contacts += [{"kind": "contact", "name": f"c{i}", "a": f"d{i - 1}", "b": f"d{i}"} for i in range(1, count)]
+    if friction:
+        contacts = [{**one, "friction": friction} for one in contacts]
+    answer = solve_scene(read({"gravity": [0, 0], "bodies": bodies, "connections": contacts[::-1]}), [1.0])
+    assert answer.problem is None
+    assert {event.name for event in answer.events} == {one["name"] for one in contacts}
+    for event in answer.events:
+        above = sum(range(int(event.name[1:]) + 1, count + 1))
+        assert event.impulses["normal"] == pytest.approx(3 * above, rel=1e-12)
+    assert np.abs(column(answer, "d0.velocity").values).max() < 1e-12
