@@ -77,17 +77,15 @@ def recurring(
     end : ball
         Time up to which the motion is wanted (s).
     listed : bool
-        Whether enough bounces are listed, so that those that are alike exactly may be summed up.
+        Whether enough bounces are listed, so that those that follow may be summed up.
     """
     one = unilateral[i]
-    if phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
+    if not listed or phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
         return None
     if one.slip is not None and one.law != "newton":
         # The slip that is followed through an impulse changes its rebound from one bounce to the next.
         return None
     exact = phase.models[0].whole.uniform and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
-    if exact and not listed:
-        return None
     found: list[Accumulation] = []
     known = tracks.wide()[0]
     for k in range(len(phase.tracks)):

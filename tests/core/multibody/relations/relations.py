@@ -128,11 +128,13 @@ def _checked_by_condition(request: Json, random: np.random.Generator) -> list[Di
         # A number on which the scene hangs, such as the place of a joint, cannot be moved.
         return [one for one in differences(own, found) if one.kind == "crash"]
 
-    def kept(figure: Figure) -> bool:
-        return f"column:{figure.owner}.{figure.what}" in stated
+    def kept(key: str, figure: Figure) -> bool:
+        # An axis alone tells the attitude of a body that is symmetric, which it is exactly or not at all.
+        symmetric = figure.what == "axis" and not (key in own.figures and key in found.figures)
+        return key in stated and not symmetric
 
     def wide(view: View) -> View:
-        figures = {key: figure for key, figure in view.figures.items() if key in stated and kept(figure)}
+        figures = {key: figure for key, figure in view.figures.items() if kept(key, figure)}
         return View(
             figures={
                 key: Figure(one.values, one.unit, one.error + 2.0 * stated[key] + SECOND_ORDER, one.what, one.owner)
@@ -147,7 +149,7 @@ def _checked_by_condition(request: Json, random: np.random.Generator) -> list[Di
         )
 
     # Which model suffices hangs on numbers that are exact.
-    exempt = ("model", "degrees of freedom", "period in one form")
+    exempt = ("model", "parts", "degrees of freedom", "period in one form")
     return [one for one in differences(wide(own), wide(found)) if one.kind not in exempt]
 
 

@@ -179,10 +179,16 @@ def _scaled_starts(figures: dict[str, Figure]) -> dict[str, Figure]:
 
 
 def _vectors(figures: dict[str, Figure]) -> None:
-    """Join forces that are given by components to vectors."""
+    """Join forces that are given by components to vectors; what is not known along all axes is none in others."""
+    dimension = max((one.values.shape[-1] for one in figures.values() if one.what == "position"), default=0)
+    dimension = dimension or max(
+        (one.values.shape[-1] for one in figures.values() if one.what == "acceleration"), default=0
+    )
     for key in [key for key in figures if key.endswith(".x") and key.split(":")[0] in ("column", "start")]:
         stem = key[:-1]
         parts = [figures.pop(stem + axis) for axis in "xyz" if stem + axis in figures]
+        if len(parts) < dimension:
+            continue
         values = np.stack([part.values.reshape(len(part.values)) for part in parts], axis=1)
         error = float(np.hypot.reduce([part.error for part in parts]))
         figures[stem + "vector"] = Figure(values, parts[0].unit, error, "vector", parts[0].owner)
