@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from flint import arb
@@ -67,7 +67,7 @@ REST = NumericBody(0.0, None, np.zeros(3), np.eye(3), np.zeros(3), np.zeros(3), 
 def _start(scene: Scene) -> SceneSolution:
     """Return the start of a scene, which decides what velocities are that were left out."""
     try:
-        return solve_scene(scene, (0.0,), ("trajectory",))
+        return solve_scene(replace(scene, attitudes=True), (0.0,), ("trajectory",))
     except MechanicsError as fault:
         if fault.path[:1] not in (("times",), ("accuracy",)):
             raise
@@ -164,8 +164,6 @@ class NumericScene:
         given, path = start.get(f"{name}.angular_velocity"), ("bodies", name, "angular_velocity")
         if given is not None:
             return np.array([0.0, 0.0, given[0]]) if self.plane else rotation @ given
-        if f"{name}.angular_velocity_in_space" in start:
-            return start[f"{name}.angular_velocity_in_space"]
         if body.angular_velocity is None:
             return np.zeros(3)
         if self.plane:

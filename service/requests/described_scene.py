@@ -212,6 +212,13 @@ class SceneDescription(Request):
         "there with simultaneous-impacts, unless all orders have one outcome.",
     )
 
+    attitudes: bool = Field(
+        default=False,
+        description="Whether the whole attitude of every rigid body in space is answered, and its angular velocity. "
+        "Else a body with two equal moments that only its axis is seen of has the column `axis` in place of these, "
+        "and a ball that only rolls has its angular velocity in space: their models are smaller.",
+    )
+
     def with_digits(self, document: Any) -> Self:
         """Return the question with the numbers of its scene as they are written."""
         if self.numbers == "doubles":

@@ -66,6 +66,7 @@ def _part(scene: Scene, bodies: Sequence[str], joined: Mapping[int, Sequence[str
         scene.assemble,
         scene.impacts,
         scene.simultaneous,
+        scene.attitudes,
         tuple(number for number, _ in own),
     )
 

@@ -62,6 +62,8 @@ class Scene:
     assemble : "nearest" or mapping, optional
         Takes places and velocities as a sketch, in place of which the nearest are found that satisfy the connections;
         ``{"nearest": [names]}`` moves these bodies alone.
+    attitudes : bool
+        Whether the whole attitude of every rigid body of space is followed, also of a top, of which the axis suffices.
     """
 
     bodies: Mapping[str, SceneBody]
@@ -72,6 +74,7 @@ class Scene:
     assemble: Literal["nearest"] | Mapping[str, Sequence[str]] | None = None
     impacts: ImpactLaw = "newton"
     simultaneous: Simultaneous = "undecided"
+    attitudes: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.bodies, Mapping) or not self.bodies:
@@ -81,6 +84,8 @@ class Scene:
         if not isinstance(self.let, Mapping):
             raise InvalidParameter("let", "be an object of names and numbers")
         check_size(self.bodies, self.connections)
+        if not isinstance(self.attitudes, bool):
+            raise InvalidParameter("attitudes", "be true or false")
         _check_word("impacts", self.impacts, get_args(ImpactLaw))
         _check_word("simultaneous", self.simultaneous, get_args(Simultaneous))
         for name, body in self.bodies.items():

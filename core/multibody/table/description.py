@@ -75,9 +75,12 @@ def described(
     if one_sided and dimension_of(scene) == 2:
         # Angles are coordinates of their own, so that turns are counted across every event.
         seen = {name: what | {"turn"} if "direction" in what else what for name, what in seen.items()}
-    if sketch and dimension_of(scene) == 3:
+    if (sketch or scene.attitudes) and dimension_of(scene) == 3:
         # A top of which the axis alone is seen is to be described with all of its axes.
-        seen = {name: what | {"orientation"} if what - {"turn"} else what for name, what in seen.items()}
+        seen = {
+            name: what | {"orientation"} if what - {"turn"} or (scene.attitudes and scene.bodies[name].rigid) else what
+            for name, what in seen.items()
+        }
     coordinates = Coordinates(scene, numerals, seen)
     measures = Measures(coordinates, one_sided=one_sided, sketch=sketch)
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
