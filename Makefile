@@ -39,8 +39,8 @@ kernels: environment
 environment: $(ENV)/made
 
 $(ENV)/bin/python:
-	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 14))' || \
-		{ echo "Polhode needs Python 3.11, 3.12 or 3.13; name it: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)"; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 15))' || \
+		{ echo "Polhode needs Python 3.11 to 3.14; name it: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)"; exit 1; }
 	@$(PYTHON) -m venv $(ENV)
 
 $(ENV)/runs: requirements.lock | $(ENV)/bin/python

@@ -10,8 +10,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, fields
 from decimal import Decimal
 from fractions import Fraction
+from functools import reduce
+from operator import or_
 from types import NoneType
-from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Self, get_args, get_origin, get_type_hints
 
 from pydantic import Field, SkipValidation, create_model
 
@@ -79,7 +81,7 @@ def _form(hint: Any) -> Any:
         # names an object of its own.
         other = Mapping[str, Any] if Sequence[str] in parts else PolarVector
         shown.append(NumberInUnit if float in parts else other)
-    return Union.__getitem__(tuple(_form(part) for part in shown))
+    return reduce(or_, map(_form, shown))
 
 
 def _by_core(hint: Any) -> Any:

@@ -12,7 +12,7 @@ FRENCH: Mapping[str, str] = {
     "not-gradable": "Cette réponse ne peut pas être notée : la tolérance est plus fine que la précision de la "
     "valeur de référence.",
     "unreadable": "Cette réponse est illisible.",
-    "figure-unknown": "Impossible d’évaluer : la question n’a pas cette grandeur. Signalez-le à l’équipe du cours.",
+    "figure-unknown": "Impossible d'évaluer : la question n'a pas cette grandeur. Signalez-le à l'équipe du cours.",
     "carried": "Ce n'est pas la valeur attendue, mais le calcul est cohérent avec votre résultat précédent.",
     "several": "Chacune des erreurs suivantes conduit à cette valeur.",
     "sensitive": "Comparez {name} : la valeur elle-même est si proche d'une constante que l'erreur ne s'y voit guère.",
