@@ -34,8 +34,8 @@ values of a number a scene stays at rest is requested by its JSON pointer,
 `{"thresholds": {"vary": "/connections/0/friction", "between": [0, 2]}}`.
 
 Contacts push and do not pull, with friction and restitution; strings become slack and taut again. The
-answer lists the phases between the events, each with its own smallest model. What mechanics leaves undecided is an
-answer too: `problem` says what, and which assumption would decide it.
+answer lists the phases between the events, each with its own smallest model. A statically indeterminate or
+ill-posed problem is answered too: `problem` says what is not determined, and which assumption would decide it.
 
 Not covered yet: friction of balls on one another in space, friction of held connections, connections with `from` and
 `until`. They are refused. It is not proven that all equilibria are found.
