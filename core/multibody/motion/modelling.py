@@ -276,6 +276,9 @@ def _motion(piece: Piece) -> Motion:
     if swung is not None:
         return swung
     if part.acting:
+        returning = repeating(part, gain, chosen)
+        if returning is not None:
+            return returning
         return Numerical.of(part, gain, chosen, "forces are formulas of time, places or rates that are not linear")
     linear = all(row.constant for row in part.rows)
     if linear and not part.stiffness and not part.damping and not part.gyration:

@@ -192,6 +192,13 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
 
 
 def _conservative(table: Table) -> bool:
+    """Return whether the one degree of freedom of a table is in a potential.
+
+    In one degree of freedom every force by the place alone has a potential along the path; on a closed path that is
+    another one after each round, which shows in the rate with which the motion comes back.
+    """
+    if any(one.rate for law in table.acting for one in law.inputs.values()) or "s" in table.units:
+        return False
     if any(row.rate != 0 or row.drag for row in table.rows):
         return False
     zero = arb(0)
@@ -201,6 +208,8 @@ def _conservative(table: Table) -> bool:
 def _cyclic(table: Table, i: int) -> bool:
     """Return whether nothing depends on a coordinate: it only winds on."""
     if i in table.load or any(i in key for key in table.stiffness):
+        return False
+    if any(i in law.coordinates() for law in table.acting):
         return False
     return not any((i,) in poly for row in table.rows for poly in row.rates.values())
 

@@ -1,6 +1,6 @@
 """What nothing ties to a place: directions along which a part can be shifted, and the motion of its centre of mass.
 
-A direction t is free where no row, stiffness, damping or gyration sees it: W(q) t = 0 for every q, K t = 0, and so on.
+A direction t is free where no row, stiffness, damping, gyration or formula sees it: W(q) t = 0 for every q, K t = 0 ...
 Then s = t M q/(t M t) has a constant acceleration, whatever the others do, and the differences of the other coordinates
 move without s. Both are exact: t is found by elimination in balls.
 """
@@ -12,16 +12,15 @@ from collections.abc import Iterator
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, entry
 from core.multibody.algebra.rank import Elimination, Line
 from core.multibody.equations.dynamics import parts
+from core.multibody.laws.linear import linear_form
 from core.multibody.table.table import Table
 
 
 def free_shift(table: Table) -> Line | None:
     """Return a direction with mass along which a part with quadratic terms can be shifted; None without one."""
-    pushed = {i for law in table.acting for i in law.coordinates()}
     for part in parts(table):
         inside = set(part)
-        # What a formula makes of a shift is not known.
-        if len(part) < 2 or not _quadratic(table, inside) or inside & pushed:
+        if len(part) < 2 or not _quadratic(table, inside):
             continue
         elimination = Elimination()
         for line in _conditions(table, inside):
@@ -71,6 +70,9 @@ def centred(table: Table, shift: Line) -> tuple[list[Poly], tuple[Ball, Ball], s
 def _quadratic(table: Table, inside: set[int]) -> bool:
     if any(key[0] in inside for key in table.gyration):
         return True
+    laws = (law for law in table.acting if inside & law.coordinates())
+    if any(linear_form(law.root, law.inputs, law.numbers) is None for law in laws):
+        return True
     return any(not row.constant and inside & set(row.rates) for row in table.rows)
 
 
@@ -87,6 +89,11 @@ def _conditions(table: Table, inside: set[int]) -> Iterator[Line]:
             for key, value in poly.items():
                 by.setdefault(key, {})[j] = value
         yield from by.values()
+    for law in table.acting:
+        # It reads nothing of the direction, and its forces along it add up to nothing.
+        for line in (law.push, *({key[0]: x for key, x in one.form.items() if key} for one in law.inputs.values())):
+            if inside & set(line):
+                yield dict(line)
     for part in (table.stiffness, table.damping, table.gyration):
         keys: dict[tuple[int, ...], Ball] = dict(part.items())
         among = {key: value for key, value in keys.items() if key[0] in inside}

@@ -113,3 +113,81 @@ def test_what_turns_over_returns_where_all_of_its_turns_are_whole(relation: str,
             inertia = 1 + mpmath.mpf("0.2") + 9 * mpmath.mpf("0.3")
             right = 4 * mpmath.ellipk(4 * mpmath.mpf("9.81") / (81 * inertia)) / 9
             assert abs(answer.period - right) <= 1e-15
+
+
+def on_a_rail(x: str, pull: str, **more: Any) -> dict[str, Any]:
+    rail = {"kind": "slider", "a": "bob", "b": [0, 0], "slope": 0}
+    force = {"kind": "force", "name": "pull", "place": "bob", "force": [pull, 0]}
+    return {"bodies": {"bob": {"mass": 1, "at": [x, 0], **more}}, "connections": [rail, force]}
+
+
+@pytest.mark.parametrize("amplitude", ["1/10", "1", "10"])
+def test_the_period_of_a_hardening_spring_is_the_elliptic_integral(amplitude: str) -> None:
+    """Of x'' = -x - x^3 it is 4 K(m)/sqrt(1 + A^2) with m = A^2/(2 + 2 A^2)."""
+    square = eval(amplitude) ** 2
+    exact = 4 * mpmath.ellipk(square / (2 + 2 * square)) / mpmath.sqrt(1 + square)
+    assert period(on_a_rail(amplitude, "-x - x^3")) == pytest.approx(float(exact), rel=1e-15)
+
+
+def test_a_hardening_spring_is_where_the_elliptic_function_says_after_thousands_of_periods() -> None:
+    """Of x'' = -x - x^3 from rest at 1 it is cn(sqrt(2) t) with the parameter 1/4."""
+    place = column(solve_scene(read(on_a_rail("1", "-x - x^3")), [0.3, 1e4], accuracy=1e-6), "bob.position")
+    with mpmath.workdps(30):
+        for row, time in enumerate((0.3, 1e4)):
+            exact = mpmath.ellipfun("cn", mpmath.sqrt(2) * mpmath.mpf(time), m=mpmath.mpf(1) / 4)
+            assert abs(exact - place.values[row, 0]) <= place.error
+    assert place.error < 1e-13
+
+
+def test_a_morse_oscillator_has_the_period_of_its_energy() -> None:
+    """Of the potential exp(-2x) - 2 exp(-x) it is 2 pi/sqrt(-2 E) (P. M. Morse, Physical Review 34 (1929), 57)."""
+    energy = mpmath.exp(-1) - 2 * mpmath.exp(-mpmath.mpf(1) / 2)
+    exact = 2 * mpmath.pi / mpmath.sqrt(-2 * energy)
+    assert period(on_a_rail("1/2", "-2*(exp(-x) - exp(-2*x))")) == pytest.approx(float(exact), rel=1e-15)
+
+
+@pytest.mark.parametrize("way", [["6/5", 0], ["18/25", "24/25"], ["18/25", 0, "24/25"]])
+@pytest.mark.parametrize("speed", [0, 3])
+def test_two_atoms_swing_however_they_lie_and_fly(way: list[Any], speed: float) -> None:
+    """Lennard-Jones: the period is an integral over the distance, with the reduced mass 2/3."""
+    bodies = {
+        "one": {"mass": 1, "at": [1000, 0, 0][: len(way)], "velocity": [speed, 1, 2][: len(way)]},
+        "two": {"mass": 2, "at": [f"1000 + {way[0]}", *way[1:]], "velocity": [speed, 1, 2][: len(way)]},
+    }
+    bond = {"kind": "spring", "a": "one", "b": "two", "law": "24/length^7 - 48/length^13"}
+    with mpmath.workdps(30):
+
+        def potential(r: Any) -> Any:
+            return 4 * (r**-12 - r**-6)
+
+        far = mpmath.mpf(6) / 5
+        # Of x = r^-6 the potential is 4 (x^2 - x): both ends add up to one.
+        near = (1 - far**-6) ** (-mpmath.mpf(1) / 6)
+
+        def slowness(u: Any) -> Any:
+            # r = middle + half sin u takes out the roots at both ends.
+            r = (near + far) / 2 + (far - near) / 2 * mpmath.sin(u)
+            return (far - near) / 2 * mpmath.cos(u) / mpmath.sqrt(3 * (potential(far) - potential(r)))
+
+        exact = float(2 * mpmath.quad(slowness, [-mpmath.pi / 2, 0, mpmath.pi / 2], method="gauss-legendre"))
+    found = solve_scene(read({"bodies": bodies, "connections": [bond]}), [0.25, 0.25 + 40 * exact])
+    apart = column(found, "two.position").values - column(found, "one.position").values
+    assert apart[0] == pytest.approx(apart[1], abs=1e-11)
+    size = sum(x * x for x in apart[0]) ** 0.5
+    assert float(near) < size < 1.2
+
+
+@pytest.mark.parametrize(
+    ("bodies", "connections"),
+    [
+        ({"bob": {"mass": 1, "at": [1, 0], "velocity": [0, 3]}}, ["-y", "x"]),
+        ({"bob": {"mass": 1, "at": [1, 0], "velocity": [0, 3]}}, ["-vx/10", 0]),
+        ({"bob": {"mass": 1, "at": [1, 0], "velocity": [0, 3]}}, ["sin(t)", 0]),
+    ],
+)
+def test_what_gains_or_loses_with_each_round_has_no_period(bodies: dict[str, Any], connections: list[Any]) -> None:
+    rod = {"kind": "rod", "a": "bob", "b": [0, 0]}
+    force = {"kind": "force", "place": "bob", "force": connections}
+    found = solve_scene(read({"bodies": bodies, "connections": [rod, force]}), [0.1])
+    assert found.period is None
+    assert found.model.name == "Taylor series"
