@@ -91,6 +91,10 @@ class _Dispatched(Response):
         await self._handler(scope, receive, send)
 
 
+PHRASES = {413: "Request Entity Too Large", 422: "Unprocessable Entity"}
+"""Of statuses that Python calls otherwise from 3.13 on: names of the document do not depend on who writes it."""
+
+
 def serve_routes(app: FastAPI, handlers: Mapping[tuple[str, str], ASGIApp], unrouted: ASGIApp) -> None:
     """Give FastAPI the handlers by method and path, and what answers where none of them fits."""
     for (method, path), handler in handlers.items():
@@ -250,7 +254,7 @@ def _problems_of(route: Route) -> tuple[int, ...]:
 
 
 def _response_name(status: int) -> str:
-    return HTTPStatus(status).phrase.title().replace(" ", "").replace("-", "")
+    return PHRASES.get(status, HTTPStatus(status).phrase).title().replace(" ", "").replace("-", "")
 
 
 def _problem(status: int) -> dict[str, Any]:
