@@ -34,6 +34,9 @@ KNOWN = 1e-9
 COARSE = 2.0**-24
 """Share of its time below which a step is too small beside the doubles."""
 
+UNDERFLOW = float(np.finfo(float).smallest_subnormal)
+"""What a double is rounded by at least, however small it is: a place after 1e-236 s is none."""
+
 
 def check_motion(motion: NamedSceneMotion, times: Floats) -> None:
     """Check the motion about a time between the first and the last of its samples.
@@ -89,7 +92,7 @@ def _compare(
         return
     states = motion.states(samples.values)
     errors = {name: np.broadcast_to(samples.errors[name], values.shape) for name, values in samples.values.items()}
-    unsure = np.abs(motion.states(errors)).max(axis=0)
+    unsure = np.abs(motion.states(errors)).max(axis=0) + UNDERFLOW
     y, v = states[3, :count], states[3, count:]
     gained = WEIGHTS @ states / step
     expected = np.concatenate([v, a + b * (y - c) + d * np.sin(y)])

@@ -62,3 +62,10 @@ def test_right_motions_pass(name: str) -> None:
 def test_wrong_motions_are_refused(name: str, kind: str) -> None:
     with pytest.raises(SelfCheckFailed):
         check_motion(SPOILED[kind](SCENES[name].motion_to(1.0)), TIMES)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("after", [1e-160, 1e-236, 1e-310])
+@pytest.mark.parametrize("scene", SCENES)
+def test_places_that_underflow_are_known_to_no_share_of_themselves(scene: str, after: float) -> None:
+    """After 1e-236 s something has a velocity, and a place that no double has: the right motion was refused."""
+    check_motion(SCENES[scene].motion_to(1.0), np.array([0.0, after]))
