@@ -146,6 +146,21 @@ class ImpactErrors:
 
 
 @dataclass(frozen=True)
+class ImpactRates:
+    """The rate along which an impulse acts, before and after an impact (m/s, of a stop rad/s).
+
+    Attributes
+    ----------
+    before, after, error : float
+        The error is of both.
+    """
+
+    before: float
+    after: float
+    error: float
+
+
+@dataclass(frozen=True)
 class MotionEvent:
     """Something that happens in a motion.
 
@@ -167,6 +182,8 @@ class MotionEvent:
         Of an impact, by this connection (J); of several at one time they add up to what is lost.
     errors : ImpactErrors
         Of impulses and energy loss.
+    rates : mapping of str to ImpactRates
+        Of an impact, by the names of the impulses: of the gap, below zero where it closes, and of the slip.
     """
 
     kind: str
@@ -176,6 +193,7 @@ class MotionEvent:
     impulses: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     energy_loss: float = 0.0
     errors: ImpactErrors = field(default_factory=ImpactErrors)
+    rates: Mapping[str, ImpactRates] = field(default_factory=lambda: MappingProxyType({}))
 
 
 @dataclass(frozen=True, eq=False)

@@ -125,6 +125,14 @@ class ImpactErrors(View):
     energy_loss: Joules[float] | None
 
 
+class ImpactRates(View):
+    """The rate along which an impulse acts, before and after an impact; of a stop, in rad/s."""
+
+    before: Annotated[float, Unit("m/s")]
+    after: Annotated[float, Unit("m/s")]
+    error: Annotated[float, Unit("m/s")] = Field(description="Of both.")
+
+
 class EndEvent(View):
     """Something that ends a phase of a motion, or the motion."""
 
@@ -144,6 +152,9 @@ class EndEvent(View):
         "lost; one of them may be negative."
     )
     errors: ImpactErrors = Field(description="Of impulses and energy loss; that of the time is in error.")
+    rates: dict[str, ImpactRates] = Field(
+        description="Of an impact, by the names of its impulses: of the gap, below zero where it closes, and of slip."
+    )
 
 
 class SceneProblem(View):

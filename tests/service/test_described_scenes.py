@@ -444,6 +444,7 @@ async def test_a_ball_bounces_and_mechanics_leaves_two_impacts_undecided() -> No
     assert answer["events"][0]["time"] == 1.0
     assert answer["events"][0]["impulses"] == {"normal": pytest.approx(15, rel=1e-15)}
     assert answer["events"][0]["energy_loss"] == pytest.approx(37.5, rel=1e-15)
+    assert set(answer["events"][0]["rates"]["normal"]) == {"before", "after", "error"}
     assert [(phase["start"], phase["end"]) for phase in answer["phases"]] == [(0.0, 1.0), (1.0, None)]
     assert "problem" not in answer
     scene["bodies"]["q"] = ball | {"at": [0, 0.1]}

@@ -11,6 +11,7 @@ from core.multibody.audit.coefficients import touch_of
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.definition_of import definition_of
+from core.multibody.audit.level_rims import Both, level_rim
 from core.multibody.audit.outlines import ByCorners, OnOutline
 from core.multibody.audit.placement import Place, Undefined
 from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
@@ -46,8 +47,11 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
     if "radius" in on:
         around = Outline((at,), reader.number(on["radius"], (*where, "radius")))
         return _by_corners(name, [*_between(name, own, around, touch)])
-    face, tips = _face(reader, on, where), [Tip(place, own.radius, own.semi_axes) for place in own.corners]
-    return _by_corners(name, [OnFace(name, (*tip.place.bodies, *at.bodies), touch, tip, face) for tip in tips])
+    face = _face(reader, on, where)
+    rim = level_rim(own, face, name, reader.bodies)
+    tips = [Tip(place, own.radius, own.semi_axes) for place in own.corners] if rim is None else list(rim.tips)
+    found = _by_corners(name, [OnFace(name, (*tip.place.bodies, *at.bodies), touch, tip, face) for tip in tips])
+    return found if rim is None else Both(name, found.bodies, found, rim)
 
 
 def _between(name: str, a: Outline[Place], b: Outline[Place], touch: Touch) -> Iterator[OnRound | OnOutline]:

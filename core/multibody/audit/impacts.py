@@ -128,7 +128,9 @@ class Impacts:
         self._check_energy(ledger, description, (before, after), times)
         velocities = [np.abs(one.velocity).reshape(len(times), -1).max(axis=1) for one in samples.motion.values()]
         fastest = np.max(velocities, axis=0) + arm * spun
-        self._check_restitution(ledger, description, (before, after), speed + (KNOWN + tilt) * fastest)
+        unsure = speed + (KNOWN + tilt) * fastest
+        self._check_rates(ledger, description, (before, after), unsure)
+        self._check_restitution(ledger, description, (before, after), unsure)
 
     def _check_energy(
         self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], times: Numbers
@@ -149,6 +151,24 @@ class Impacts:
                     )
         ledger.compare("energy that an impact takes", "", times, energies[0] - energies[1] - loss, allowed)
         ledger.compare("no gain of energy at an impact", "", times, np.minimum(loss, 0.0), allowed)
+
+    def _check_rates(
+        self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], known: Numbers
+    ) -> None:
+        """Compare the rates of the gaps that take impulses with those of the bodies, before and after."""
+        for connection in description.connections:
+            for force in connection.gaps(sides[0].placement) if connection.coefficients is not None else ():
+                name = force.rsplit(".", 1)[0]
+                own = [(k, event) for k, group in enumerate(self.groups) for event in group if event.name == name]
+                if not own:
+                    continue
+                rows, times = [k for k, _ in own], np.array([event.time for _, event in own])
+                for side, when in zip(sides, ("before", "after"), strict=True):
+                    seen = connection.gaps(moved(side.placement, side.motion, in_time=True))[force].imag[rows] / STEP
+                    rates = [event.rates["normal"] for _, event in own]
+                    stated = np.array([getattr(rate, when) for rate in rates])
+                    allowed = MARGIN * known[rows] + np.array([rate.error for rate in rates])
+                    ledger.compare(f"rate {when} an impact", connection.name, times, stated - seen, allowed)
 
     def _check_restitution(
         self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], known: Numbers

@@ -94,22 +94,41 @@ class Impact:
         impulses, works = dict(self.impulses), dict(self.works)
         for i in every:
             for other in others:
-                own, beside = impulses.get(i, nothing), other.impulses.get(i, nothing)
+                own, beside = impulses.get(i, nothing), other.along_directions_of(self, i)
                 impulses[i] = (own[0].union(beside[0]), own[1].union(beside[1]), own[2].union(beside[2]))
                 work: Ball = works.get(i, ZERO)
                 works[i] = work.union(other.works.get(i, ZERO))
         return replace(self, impulses=impulses, works=works)
 
+    def along_directions_of(self, other: Impact, i: int) -> tuple[Ball, Ball, Ball]:
+        """Return the impulse of a measure along the directions of slip of another impact, in space other ones."""
+        push, *rubs = self.impulses.get(i, (ZERO, ZERO, ZERO))
+        own, others = self.unilateral[i].tangents, other.unilateral[i].tangents
+        if own is None or others is None:
+            return push, rubs[0], rubs[1]
+        vector = [rubs[0] * x + rubs[1] * y for x, y in zip(*own, strict=True)]
+        first, second = (sum((x * y for x, y in zip(vector, e, strict=True)), ZERO) for e in others)
+        return push, first, second
+
     def components(self, i: int) -> dict[str, Ball]:
         """Return the impulse of a measure by its names: along the gap, and of friction in the plane or along axes."""
-        one, (push, rub, beside) = self.unilateral[i], self.impulses[i]
-        found = {"normal": push}
-        if one.tangents is not None:
-            for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
-                found[f"friction.{axis}"] = rub * x + beside * y
-        elif one.slip is not None:
-            found["friction"] = rub
-        return found
+        return _by_names(self.unilateral[i], *self.impulses[i])
+
+    def rates(self, i: int, q: Sequence[Ball], v: Sequence[Ball]) -> dict[str, Ball]:
+        """Return the rates of gap and slip of a measure in a state, by the names of its impulses."""
+        one = self.unilateral[i]
+        return _by_names(one, gap_rate(one, q, v), slip_rate(one, q, v), across_rate(one, q, v))
+
+
+def _by_names(one: Unilateral, normal: Ball, slip: Ball, across: Ball) -> dict[str, Ball]:
+    """Return what is along gap and slip by the names of the impulses; in space, slips are along axes."""
+    found = {"normal": normal}
+    if one.tangents is not None:
+        for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
+            found[f"friction.{axis}"] = slip * x + across * y
+    elif one.slip is not None:
+        found["friction"] = slip
+    return found
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from flint import arb_mat
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.contacts.contact_responses import Forces, Responses
 from core.multibody.contacts.contact_states import Problem, State, grips, pairs_of_sides, sticks_more
-from core.multibody.contacts.slip_directions import Direction, directions
+from core.multibody.contacts.slip_directions import AHEAD, Direction, directions, directions_together
 from core.multibody.table.connection_effects import Unilateral
 
 LIMIT = 2.0**-40
@@ -51,10 +51,9 @@ def impulses_at_once(
         if any(State.OPEN not in (states[a], states[b]) for a, b in sides):
             continue
         slides = [i for i, state in zip(group, states, strict=True) if state.sense and i in found.across]
-        if len(slides) > 1:
-            several = True
-            continue
-        for ways in _ways(unilateral, group, states, slides, rates, found):
+        every = _ways(unilateral, group, states, slides, rates, found)
+        several = several or every is None
+        for ways in every or ():
             impulses = _solved(unilateral, group, states, rates, found, ways)
             if impulses is None:
                 continue
@@ -69,7 +68,7 @@ def impulses_at_once(
         return Problem(
             "several-onsets",
             "several contacts would slide after this impact in space: the directions in which they do follow from one "
-            "another, and are not looked for",
+            "another, and are not found",
             names,
             decided_by="impacts one after another",
         )
@@ -108,9 +107,7 @@ def likest(
         if any(State.OPEN not in (states[a], states[b]) for a, b in sides):
             continue
         slides = [i for i, state in zip(group, states, strict=True) if state.sense and i in found.across]
-        if len(slides) > 1:
-            continue
-        for ways in _ways(unilateral, group, states, slides, rates, found):
+        for ways in _ways(unilateral, group, states, slides, rates, found) or ():
             impulses = _solved(unilateral, group, states, rates, found, ways)
             if impulses is None:
                 continue
@@ -137,21 +134,33 @@ def _ways(
     slides: Sequence[int],
     rates: RatesByLine,
     found: Responses,
-) -> list[dict[int, Direction]]:
-    """Return the directions in which contacts may slide after an impact in space: along those they have then."""
+) -> list[dict[int, Direction]] | None:
+    """Return the directions in which contacts may slide after an impact in space, each along the slip that it has then.
+
+    None where there are several, and they are not found.
+    """
     if not slides:
         return [{}]
-    (i,) = slides
 
-    def after(direction: Direction) -> Direction | None:
-        impulses = _solved(unilateral, group, states, rates, found, {i: direction})
+    def slips(assumed: Sequence[Direction]) -> list[Direction] | None:
+        impulses = _solved(unilateral, group, states, rates, found, dict(zip(slides, assumed, strict=True)))
         if impulses is None:
             return None
-        then, one = rates_after(impulses, rates, found), unilateral[i]
-        first, second = (then[line] + thrown_back(one, i, line, rates, found) for line in found.grip(i))
-        return first, second
+        then, after = rates_after(impulses, rates, found), []
+        for i in slides:
+            first, second = (then[line] + thrown_back(unilateral[i], i, line, rates, found) for line in found.grip(i))
+            after.append((first, second))
+        return after
 
-    return [{i: direction} for direction in directions(after)]
+    def follows(way: Direction) -> Direction | None:
+        after = slips([way])
+        return None if after is None else after[0]
+
+    if len(slides) == 1:
+        return [{slides[0]: way} for way in directions(follows)]
+    first = slips([AHEAD] * len(slides))
+    together = [] if first is None else directions_together(first, slips)
+    return None if together is None else [dict(zip(slides, together, strict=True))] if together else []
 
 
 def _solved(

@@ -153,6 +153,12 @@ def directions_together(first: Slips, after: Callable[[Slips], Slips | None]) ->
         None at all where nothing follows, or one of the contacts would not slide.
     """
     slips: Slips | None = first
+    if not any(is_zero(x) and is_zero(y) for x, y in first):
+        # What translates keeps the direction that it would have without friction, also where that holds it to the last.
+        straight = [one_of(slip) for slip in first]
+        follows = after(straight)
+        if follows is not None and all(map(_goes_along, straight, follows)):
+            return straight
     assumed = [AHEAD] * len(first)
     width = 2.0 ** (_GUARD_OF_AN_ANGLE - ctx.prec)
     for step in range(_MOST_STEPS):
@@ -169,6 +175,15 @@ def directions_together(first: Slips, after: Callable[[Slips], Slips | None]) ->
             assumed = [_unit(c - x * s, s + x * c) for (c, s), x in zip(assumed, change, strict=True)]
         slips = after(assumed)
     return None
+
+
+def _goes_along(direction: Direction, slip: Direction) -> bool:
+    """Return whether a slip is along a direction, or none."""
+    along, across = (
+        direction[0] * slip[0] + direction[1] * slip[1],
+        direction[0] * slip[1] - direction[1] * slip[0],
+    )
+    return is_zero(across) and (is_zero(along) or bool(along > 0))
 
 
 def _with_widths(

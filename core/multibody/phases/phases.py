@@ -30,6 +30,7 @@ from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.phases.formula_ends import what_ends
+from core.multibody.phases.level_phases import rim_that_tips, undecided_spin
 from core.multibody.phases.openings import openings
 from core.multibody.phases.passing_touch import without_passing_touch
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
@@ -44,7 +45,7 @@ from core.multibody.table.description import Described, described
 from core.multibody.table.facing import facing, is_on_a_corner
 from core.multibody.table.law_pieces import Argument, Key, switching
 from core.multibody.table.table import Table
-from core.systems.trajectory import ImpactErrors, MotionEvent
+from core.systems.trajectory import ImpactErrors, ImpactRates, MotionEvent
 
 MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
@@ -122,6 +123,8 @@ class _Run:
             opening = openings(self.base.measures.table, self.decided, self.touching, *self.tracks.wide())
             phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start, opening)
             phase.arguments = tuple(self.arguments.values())
+            if self._ends_at_a_rim(phase):
+                return
             self.motion.phases.append(phase)
             if self._accumulate(phase):
                 continue
@@ -143,6 +146,18 @@ class _Run:
                 decided_by = "another question, from the state that is answered last"
                 self._stop(Problem("event-limit", explanation, (), decided_by=decided_by))
                 return
+
+    def _ends_at_a_rim(self, phase: Phase) -> bool:
+        """End the motion where places of a level rim do not stand for it any more; return whether that is so."""
+        q, v = self.tracks.wide()
+        tips = rim_that_tips(self.base, phase, q, v)
+        if tips is not None:
+            self.motion.ended = self._event("singular", tips)
+            return True
+        spins = undecided_spin(self.base, phase, v)
+        if spins is not None:
+            self._stop(spins)
+        return spins is not None
 
     def _stop(self, problem: Problem) -> None:
         """End the motion where mechanics does not decide."""
@@ -189,11 +204,11 @@ class _Run:
                 state, how = projected(table, track.q, track.v, q), self.base.scene.simultaneous
                 one = impact(table, unilateral, self.touching, *state, settled=outcome, simultaneous=how)
                 if isinstance(one, Problem):
-                    self._record(hit, outcome)
+                    self._record(hit, outcome, q, v)
                     self._stop(one)
                     return False
                 alike.append(one)
-            self._record(hit, outcome.widened(alike))
+            self._record(hit, outcome.widened(alike), q, v)
             rates = [found.v for found in alike or [outcome]]
             tracks.each = [replace(track, v=v) for track, v in zip(tracks.each, rates, strict=True)]
             self._settled(settling, left)
@@ -275,8 +290,8 @@ class _Run:
             for i, one in enumerate(self.unilateral)
         ], settling
 
-    def _record(self, hit: Sequence[int], outcome: Impact) -> None:
-        """Add the events of an impact, each with the energy that its connection takes."""
+    def _record(self, hit: Sequence[int], outcome: Impact, q: Sequence[Ball], v: Sequence[Ball]) -> None:
+        """Add the events of an impact from a state, each with the energy that its connection takes."""
         self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, balls = outcome.unilateral[i], outcome.components(i)
@@ -295,7 +310,9 @@ class _Run:
                 {name: None if known is None else distance_bound(x, impulses[name]) for name, x in balls.items()},
                 None if known is None else distance_bound(-work, loss),
             )
-            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss, errors))
+            before, after = outcome.rates(i, q, v), outcome.rates(i, q, outcome.v)
+            rates = {name: _impact_rates(x, after[name]) for name, x in before.items()}
+            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss, errors, rates))
 
     def _choose(self, q: Sequence[Ball], v: Sequence[Ball]) -> Decided | Problem:
         """Find the pieces of formulas and the states of what touches, which may depend on one another."""
@@ -466,3 +483,15 @@ class _Run:
             self.bounced = {}
             return True
         return False
+
+
+def _impact_rates(before: Ball, after: Ball) -> ImpactRates:
+    """Return a rate before and after an impact with the error of both; what cannot be told from zero is zero."""
+    first, then = (0.0 if is_zero(x) else nearest(x) for x in (before, after))
+    return ImpactRates(first, then, max(_off(before, first), _off(after, then)))
+
+
+def _off(ball: Ball, value: float) -> float:
+    """Return how far a double is at most from what a ball stands for."""
+    off = distance_bound(ball, value)
+    return math.inf if off is None else off

@@ -139,6 +139,13 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
         )
     numerals = Numerals.of(scene.let, scene.numbers)
     base = _base(scene, numerals)
+    if base.measures.level_rims:
+        raise NotApplicable(
+            "thresholds of rest are not answered where a disc or cylinder stands level: it may tip over any point of "
+            "its rim, and not over four of them alone",
+            path=where,
+            remedy="describe places of the rim that touch",
+        )
     if path not in numerals.every:
         near = did_you_mean(question.vary, [pointer_of(one) for one in numerals.every])
         raise InvalidParameter(

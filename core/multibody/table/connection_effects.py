@@ -113,6 +113,27 @@ class Kept:
 
 
 @dataclass(frozen=True)
+class LevelRim:
+    """What has to hold of rims that four places stand for.
+
+    Attributes
+    ----------
+    name : str
+        Of the contact.
+    leaning : tuple of polynomial
+        Components of the normal along the two diameters: one of them stays zero.
+    heading : tuple of int
+        Coordinates of the first body axis.
+    path : path
+    """
+
+    name: str
+    leaning: tuple[Poly, Poly]
+    heading: tuple[int, ...]
+    path: Path
+
+
+@dataclass(frozen=True)
 class Facet:
     """A part of an outline that a corner may meet: an edge between its ends, or the arc about a corner.
 

@@ -26,6 +26,7 @@ from core.multibody.algebra.polynomials import (
 )
 from core.multibody.language.contacts import Contact
 from core.multibody.table.contact_places import Side, gap_of_rims, is_on, place_on, refuse_limits, two_sides
+from core.multibody.table.level_rims import with_places
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.supports import Support, support
@@ -43,12 +44,15 @@ class Touching:
     tangents : two vectors, or None
     rolls : bool
         Whether sticking is rolling.
+    together : bool
+        Whether it is one of several places that land at once.
     """
 
     gap: Poly
     slips: tuple[LinearForm, LinearForm] | None
     tangents: tuple[Sequence[Ball], Sequence[Ball]] | None
     rolls: bool
+    together: bool = False
 
 
 def contact_in_space(measures: Measures, connection: Contact, name: str, path: Path, *, rubs: bool) -> list[Touching]:
@@ -86,11 +90,13 @@ def _on(measures: Measures, connection: Contact, name: str, path: Path, *, rubs:
             remedy="describe the body without moments, as one that does not turn",
         )
     normal = measures.coordinates.vector_of(at.body, n, where)
+    rims, side = side, with_places(measures, name, side, normal, path)
+    level = side is not rims
     reach = support(measures, name, side, normal, path, levers=rubs)
     apart = [[difference(x, y) for x, y in zip(point.at, at.at, strict=True)] for point in side.points]
     gaps = [combined((ONE, dot(normal, d)), (-ONE, reach.depth)) for d in apart]
     if not rubs:
-        return [Touching(gap, None, None, side.round) for gap in gaps]
+        return [Touching(gap, None, None, side.round, level) for gap in gaps]
     tangents = perpendicular(n, where)
     rate = measures.numerals.number(on.get("rate", 0), (*where, "rate"))
     if is_zero(rate):
@@ -104,7 +110,7 @@ def _on(measures: Measures, connection: Contact, name: str, path: Path, *, rubs:
                 line = sum_of_rates(*reach.velocity(d, e), turning)
                 slips[k].append(_constant(measures, f"{name}.slip.{own}", line))
     return [
-        Touching(gap, (one, other), (tangents[0], tangents[1]), side.round)
+        Touching(gap, (one, other), (tangents[0], tangents[1]), side.round, level)
         for gap, one, other in zip(gaps, *slips, strict=True)
     ]
 

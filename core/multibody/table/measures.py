@@ -25,7 +25,7 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     product,
 )
-from core.multibody.table.connection_effects import Force, Kept, Limit, Unilateral, WorkTerm
+from core.multibody.table.connection_effects import Force, Kept, LevelRim, Limit, Unilateral, WorkTerm
 from core.multibody.table.coordinates import Coordinates
 from core.multibody.table.frames import Point
 from core.multibody.table.momenta import StateFunction
@@ -64,6 +64,7 @@ class Measures:
         self.conservative = True
         # Polynomials that keep their values all the time, or the scene is beyond what its connections mean.
         self.kept: list[Kept] = []
+        self.level_rims: list[LevelRim] = []
         # The horizontal direction of a plane that spins about its vertical: rates along it press across the plane.
         self.pressed_by: list[Ball] | None = None
         # The coordinates of functions of time, by what they are functions of.

@@ -170,7 +170,9 @@ class Mechanism:
         there = coordinates.advanced(state, times[:, None] * motions, times)
         moving = coordinates.moving(there, motions)
         one_sided = self.one_sided
-        found = [(("held", k), x) for k, one in enumerate(self.definitions) for x in one.held(moving).values()]
+        found = [
+            (("held", k), x) for k, one in enumerate(self.definitions) if one.holds for x in one.held(moving).values()
+        ]
         found += [(("push", i), one_sided[i].definition.gaps(moving)[one_sided[i].key]) for i in closed]
         owners, held = _columns(found, n + 10)
         found = []

@@ -44,6 +44,13 @@ SPOILED: dict[str, Callable[[MotionEvent], MotionEvent]] = {
     "impulses have the wrong sign": scaled("normal", -1.0),
     "nothing is pushed": scaled("normal", 0.0),
     "energy is lost twice": lambda event: replace(event, energy_loss=2.0 * event.energy_loss + 1e-3),
+    "rates are those of another impact": lambda event: replace(
+        event,
+        rates={
+            key: replace(rate, after=rate.after + 1e-4 * max(1.0, abs(rate.before)))
+            for key, rate in event.rates.items()
+        },
+    ),
     "energy is gained": lambda event: replace(event, energy_loss=-event.energy_loss - 1e-3),
 }
 

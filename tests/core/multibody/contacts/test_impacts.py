@@ -597,3 +597,19 @@ def test_a_stack_that_lands_without_bouncing_stops(
         above = sum(range(int(event.name[1:]) + 1, count + 1))
         assert event.impulses["normal"] == pytest.approx(3 * above, rel=1e-12)
     assert np.abs(column(answer, "d0.velocity").values).max() < 1e-12
+
+
+@pytest.mark.parametrize("spin", [0, 3])
+def test_the_energy_that_an_impact_takes_is_its_impulses_times_the_means_of_its_rates(spin: float) -> None:
+    """W. Thomson, P. G. Tait, "Treatise on Natural Philosophy" (1867), section 309."""
+    ball = {"mass": 1, "shape": {"kind": "ball", "radius": 0.1}, "at": [0, 0, 0.55], "velocity": [1, 0.5, 0]}
+    ball["angular_velocity"] = [0, spin, 1]
+    floor = {"kind": "contact", "place": "ball", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}, "friction": 0.1}
+    scene = {"gravity": [0, 0, -10], "bodies": {"ball": ball}, "connections": [floor | {"restitution": 0.5}]}
+    event = solve_scene(read(scene), [0.4]).events[0]
+    assert (event.rates["normal"].before, event.rates["normal"].after) == pytest.approx((-3, 1.5), rel=1e-14)
+    assert event.rates["friction.x"].before == pytest.approx(1 - 0.1 * spin, rel=1e-14)
+    work = sum(
+        impulse * (event.rates[name].before + event.rates[name].after) / 2 for name, impulse in event.impulses.items()
+    )
+    assert event.energy_loss == pytest.approx(-work, rel=1e-14)

@@ -51,6 +51,21 @@ CYLINDER_LANDS = on_a_plane(
     kind="contact",
     restitution=0.4,
 )
+CYLINDER = {"mass": 1, "shape": {"kind": "cylinder", "radius": 0.2, "height": 0.6}}
+COIN_SLIDES = on_a_plane(
+    {"mass": 1, "shape": {"kind": "disc", "radius": 0.2}, "at": [0, 0, 0]}
+    | {"angular_velocity": [0, 0, 0], "velocity": [1, 0.5, 0]},
+    kind="contact",
+    friction=0.2,
+)
+CYLINDER_TIPS = on_a_plane(
+    CYLINDER | {"at": [0, 0, 0.3], "angular_velocity": ["5/2", 0, 0], "velocity": [0, "-3/4", "1/2"]},
+    kind="contact",
+    friction=0.8,
+)
+CYLINDER_TUMBLES = on_a_plane(
+    CYLINDER | {"at": [0, 0, 1], "angular_velocity": [0, 3, 0], "velocity": [0, 1, 0]}, kind="contact", restitution=0.4
+)
 EGG_SLIDES = on_a_plane(
     {"mass": 1, "shape": {"kind": "ellipsoid", "semi_axes": [0.1, 0.12, 0.15], "at": [0.01, 0, 0]}, "at": [0, 0, 0.15]}
     | {"moments": ["0.004", "0.005", "0.003"], "angular_velocity": [1, 2, 9], "velocity": [1, 0, 0.02]},
@@ -61,7 +76,16 @@ EGG_SLIDES = on_a_plane(
 
 @pytest.mark.parametrize(
     ("scene", "end"),
-    [(COLLIDE, 0.5), (GRAZES_THE_CAPS, 0.6), (COIN_ROLLS, 0.5), (CYLINDER_LANDS, 0.4), (EGG_SLIDES, 0.05)],
+    [
+        (COLLIDE, 0.5),
+        (GRAZES_THE_CAPS, 0.6),
+        (COIN_ROLLS, 0.5),
+        (CYLINDER_LANDS, 0.4),
+        (EGG_SLIDES, 0.05),
+        (COIN_SLIDES, 1.0),
+        (CYLINDER_TIPS, 0.2),
+        (CYLINDER_TUMBLES, 0.5),
+    ],
 )
 def test_the_two_engines_agree_about_shapes(scene: dict[str, Any], end: float) -> None:
     verdict = compared(scene, [0.0, end / 2, end])
