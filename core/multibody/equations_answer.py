@@ -63,6 +63,24 @@ class LinearEquations:
 
 
 @dataclass(frozen=True)
+class CoordinateAtStart:
+    """A coordinate and its rate at the start.
+
+    Attributes
+    ----------
+    value, rate : float
+        In SI units; the rate is None of a coordinate whose equation is of the first order.
+    error, rate_error : float or None
+        Bounds; None beyond the range of doubles, and of a rate that is None.
+    """
+
+    value: float
+    rate: float | None
+    error: float | None
+    rate_error: float | None
+
+
+@dataclass(frozen=True)
 class SceneEquations:
     """The equations of motion of a scene in the first of its phases.
 
@@ -70,6 +88,8 @@ class SceneEquations:
     ----------
     coordinates : mapping of str to (str or None)
         Generalised coordinates, each with its formula of columns; None for what no column shows.
+    start : mapping of str to CoordinateAtStart
+        Where the motion begins: with the equations, all that it follows from.
     why : tuple of str
         Why these suffice, in sentences.
     degrees_of_freedom : int
@@ -94,6 +114,7 @@ class SceneEquations:
     """
 
     coordinates: Mapping[str, str | None]
+    start: Mapping[str, CoordinateAtStart]
     why: tuple[str, ...]
     degrees_of_freedom: int
     places: Mapping[str, str]

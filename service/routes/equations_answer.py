@@ -31,6 +31,15 @@ class ConservedQuantity(WrittenEquation):
     error: InSI | None = Field(description="Bound of the error of the value; null beyond the range of doubles.")
 
 
+class CoordinateAtStart(View):
+    """A coordinate and its rate at the start."""
+
+    value: InSI
+    rate: InSI | None = Field(description="null of a coordinate whose equation is of the first order.")
+    error: InSI | None = Field(description="Bound of the error of the value; null beyond the range of doubles.")
+    rate_error: InSI | None = Field(description="Bound of the error of the rate; null where that is.")
+
+
 class LinearPart(View):
     """M x'' + D x' + K x = b of a part whose equations are linear or of its small motions, in SI units and radians."""
 
@@ -48,6 +57,9 @@ class SceneEquations(View):
     coordinates: dict[str, str | None] = Field(
         description="Coordinates, each with its formula of columns; null for what no column shows: turns of balls, and "
         "the directions of strings that run onto turning discs."
+    )
+    start: dict[str, CoordinateAtStart] = Field(
+        description="Coordinates and rates at the start: with the equations, all that the motion follows from."
     )
     why: list[str] = Field(description="Why these suffice, in sentences.")
     degrees_of_freedom: Annotated[int, Unit("1")]
@@ -80,6 +92,7 @@ def equations_fields(found: Written) -> dict[str, Any]:
         return {name: fields_of(one) for name, one in formulas.items()}
 
     return fields_of(found) | {
+        "start": {name: fields_of(one) for name, one in found.start.items()},
         "equations": [fields_of(one) for one in found.equations],
         "constraints": [fields_of(one) for one in found.constraints],
         "forces": shown(dict(found.forces)),

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any, Literal
 
 from pydantic import Field
 
+from core.interchange.draft import LeftOut
 from core.interchange.export_mjcf import export_mjcf
+from core.interchange.export_modelica import export_modelica
 from core.interchange.import_model import import_model
 from core.interchange.xml_reading import MOST_CHARACTERS
+from core.multibody.language.scene import Scene
 from core.systems.budget import Budget
 from service.requests.described_scene import SceneDescription
 from service.routing import Answer, PostRoute
@@ -54,15 +58,23 @@ class ImportAnswer(Envelope):
 class ExportRequest(SceneDescription):
     """A described scene, and the format of the document."""
 
-    format: Literal["mjcf"] = Field(description="mjcf: MuJoCo's XML.")
+    format: Literal["mjcf", "modelica"] = Field(
+        description="mjcf: MuJoCo's XML. modelica: a model of the equations of motion, which needs no library."
+    )
 
 
 class ExportAnswer(Envelope):
     """A document of another program."""
 
-    format: Literal["mjcf"]
+    format: Literal["mjcf", "modelica"]
     document: str
     left_out: list[LeftOutOfScene] = Field(description="What the document does not say, in the order of the scene.")
+
+
+EXPORTS: Mapping[str, Callable[[Scene], tuple[str, list[LeftOut]]]] = {
+    "mjcf": export_mjcf,
+    "modelica": export_modelica,
+}
 
 
 def imported(question: ImportRequest, budget: Budget) -> Answer:
@@ -75,7 +87,7 @@ def imported(question: ImportRequest, budget: Budget) -> Answer:
 
 def exported(question: ExportRequest, budget: Budget) -> Answer:
     """Answer which document describes a scene."""
-    document, left_out = export_mjcf(question.scene())
+    document, left_out = EXPORTS[question.format](question.scene())
     listed = [{"pointer": one.pop("at"), **one} for one in map(fields_of, left_out)]
     return {"format": question.format, "document": document, "left_out": listed, "warnings": []}
 
@@ -104,6 +116,7 @@ INTERCHANGE = (
         exported,
         description="MJCF: joints are a tree of bodies, in which MuJoCo holds them exactly; what closes loops, rods, "
         "strings and contacts are its soft constraints, as stiff as its time step allows. Velocities are those of the "
-        "keyframe `start`.",
+        'keyframe `start`. Modelica: the equations that `outputs: ["equations"]` answers, of the first phase of the '
+        "motion, with places and forces as variables.",
     ),
 )

@@ -11,7 +11,7 @@ from core.multibody.algebra.directions import scalar_product
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.equations.dynamics import kinetic, potential
-from core.multibody.equations_answer import ConservedQuantity, LinearEquations, SceneEquations
+from core.multibody.equations_answer import ConservedQuantity, CoordinateAtStart, LinearEquations, SceneEquations
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.closed_forms import closed_forms
 from core.multibody.formulation.conserved import ENERGY, Conserved, conserved_of_part
@@ -103,6 +103,7 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
         coordinates={
             name: None if node is None else constants.plain(node) for name, node in written.coordinates.items()
         },
+        start={name: _at_start(written, name) for name in written.coordinates},
         why=tuple(dict.fromkeys([*reduced.steps, *written.why])),
         degrees_of_freedom=sum(piece.freedom for piece, _ in moving),
         places={name: constants.plain(node) for name, node in places.items()},
@@ -126,8 +127,19 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
     for one in shown.linear:
         matrices = (*one.mass, *one.damping, *one.stiffness)
         require_doubles([*one.about.values(), *one.load, *(entry for row in matrices for entry in row)])
-    require_doubles([*shown.constants.values(), *(one.value for one in shown.conserved)])
+    begun = [x for one in shown.start.values() for x in (one.value, one.rate) if x is not None]
+    require_doubles([*shown.constants.values(), *begun, *(one.value for one in shown.conserved)])
     return shown
+
+
+def _at_start(written: _Written, name: str) -> CoordinateAtStart:
+    value, rate = written.start[name], written.rates.get(name)
+    return CoordinateAtStart(
+        in_doubles(value),
+        None if rate is None else in_doubles(rate),
+        error_in_doubles(value),
+        None if rate is None else error_in_doubles(rate),
+    )
 
 
 def _with_one_energy(
@@ -199,6 +211,7 @@ def _write_body(written: _Written, body: TurningBody, name: str, piece: Piece) -
     )
     written.equations += equation_sides(euler_equations(body, rates, down), order=1)
     written.lagrangian = None
+    written.start |= start
     _conserve(written, conserved_of_body(body, name, rates, down), piece.table, start, {})
     for i in piece.indices:
         del written.places[i]

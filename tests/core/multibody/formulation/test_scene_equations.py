@@ -104,6 +104,14 @@ def agreed(scene: Scene, answer: SceneSolution) -> Iterator[tuple[str, float, fl
     with mpmath.workdps(25):
         found = solved(answer.equations, columns_at(scene, answer, 0))
         assert found.rank == found.unknowns
+        for name, begun in answer.equations.start.items():
+            if answer.equations.coordinates[name] is not None:
+                off = float(found.jets[name].value) - begun.value
+                # Angles are those of the columns up to whole turns.
+                turns = 2 * np.pi * round(off / (2 * np.pi)) if abs(off) > 1.0 else 0.0
+                assert off - turns == pytest.approx(0.0, abs=1e-11 * (1.0 + abs(begun.value))), name
+                if begun.rate is not None:
+                    assert begun.rate == pytest.approx(float(found.jets[name].rate), rel=1e-11, abs=1e-11), name
         for name, one in answer.accelerations.items():
             for axis, value in zip("xyz", one.linear, strict=False):
                 if f"{name}.{axis}" in found.places:
