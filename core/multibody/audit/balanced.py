@@ -11,7 +11,7 @@ from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import MARGIN, Ledger
 from core.multibody.audit.newton import Acceleration, Freedoms, balance
 from core.multibody.audit.placement import Numbers, Undefined
-from core.multibody.audit.samples import Samples
+from core.multibody.audit.samples import EPSILON, Samples
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def check_balance(
         left, allowed = _left(ledger, description, freedoms, moments)
         if moments.starts:
             moments = replace(moments, samples=moments.samples.given_first(description.extent))
-        allowed += _moved(description, moments)
+        allowed += _moved(description, freedoms, moments)
     except Undefined:
         return
     for k, worst in enumerate(np.argmax(left - allowed, axis=0).tolist()):
@@ -98,7 +98,7 @@ def _left(
     return np.abs(found.left()), allowed
 
 
-def _moved(description: Description, moments: Accelerated) -> Numbers:
+def _moved(description: Description, freedoms: Freedoms, moments: Accelerated) -> Numbers:
     """Return by how much the stated errors of places, rates and forces change the equations, shape (freedoms, n)."""
     some = moments.samples
     changed = some.perturbed(description.bodies, some.forces)
@@ -114,4 +114,10 @@ def _moved(description: Description, moments: Accelerated) -> Numbers:
     left = balance(description, flat.placement, flat.motion, repeated, flat.forces).left()
     left = left.reshape(left.shape[0], count, -1)
     moved: Numbers = MARGIN * np.abs(left[:, 1:] - left[:, :1]).sum(axis=1)
+    # What is fixed in a body may be the difference of places in space, each rounded, which no sample moves.
+    arm = MARGIN * EPSILON * description.extent
+    pushed = sum((np.abs(np.nan_to_num(force)) for force in some.forces.values()), np.zeros(len(some.times)))
+    for name, body in description.bodies.items():
+        if body.inertia is not None:
+            moved[freedoms.turning(name)] += arm * pushed
     return moved

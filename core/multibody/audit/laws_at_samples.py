@@ -13,7 +13,7 @@ from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import NOISE, ROUNDING, Ledger, Residual
 from core.multibody.audit.placement import STEP, Numbers, Placement, Undefined, dot, moved
-from core.multibody.audit.samples import Samples
+from core.multibody.audit.samples import EPSILON, Samples
 
 ANGULAR = frozenset({"attitude", "axis"})
 """Measures that are formed of angles and cosines, which are known to rounding of one where everything is small."""
@@ -97,7 +97,9 @@ class Sizes:
         size, speed = 0.0, max(self.fastest, NOISE / ROUNDING * self.typical()[0])
         for name in connection.bodies:
             size = max(size, self.place[name])
-            speed = max(speed, self.spin.get(name, 0.0) * arm)
+            # What is fixed in a body may be a difference of places in space, which are rounded.
+            rounded = EPSILON / ROUNDING * (size + arm)
+            speed = max(speed, self.spin.get(name, 0.0) * (arm + rounded))
         return size + arm, speed
 
 

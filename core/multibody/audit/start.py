@@ -11,11 +11,11 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.chosen_times import quickness
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definitions import Description
-from core.multibody.audit.failure import Ledger
+from core.multibody.audit.failure import MARGIN, Ledger
 from core.multibody.audit.laws_at_samples import ANGULAR, MeasureValues
 from core.multibody.audit.newton import Acceleration, Freedoms
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, Undefined, cross, turned
-from core.multibody.audit.samples import ATTITUDE, POSITION, Samples, axis_of_top
+from core.multibody.audit.samples import ATTITUDE, EPSILON, POSITION, Samples, axis_of_top
 
 KNOWN = 2.0**-40
 """Share of forces to which others follow from them at a place in doubles."""
@@ -138,6 +138,7 @@ class AfterStart:
         self.fastest = max(float(np.abs(twist.velocity).max()) for twist in start.motion.values())
         self.steepest = max(float(np.abs(gain.linear).max()) for gain in gains.values())
         size = max(float(np.abs(pose.position).max()) for pose in start.placement.values())
+        self.blur = EPSILON * max(size, description.extent)
         turning = max(
             (float(np.abs(gain.angular).max()) for gain in gains.values() if gain.angular is not None), default=0.0
         )
@@ -176,9 +177,14 @@ class AfterStart:
             for key, value in own.held.items():
                 # What is held of an attitude has the size of a direction, whatever the places.
                 size = max(1.0, arm) if key in ANGULAR else arm
+                # Directions between places turn by as much as their coordinates are rounded, and rates with them.
+                blurred = MARGIN * self.blur * self.rate / self.step
                 terms = self.steepest + self.rate * self.fastest + size * (turning + self.rate**2)
                 gain = (value[first].imag - value[first + 1].imag) / STEP / (2.0 * self.step)
-                off, allowed = np.abs(gain).reshape(1, -1).max(axis=1), (ACCELERATION_KNOWN + ledger.rounding) * terms
+                off, allowed = (
+                    np.abs(gain).reshape(1, -1).max(axis=1),
+                    (ACCELERATION_KNOWN + ledger.rounding) * terms + blurred,
+                )
                 law = f"{key} held by the accelerations"
                 ledger.compare(law, connection.name, self.start.times, off, allowed)
 

@@ -613,3 +613,35 @@ def test_the_energy_that_an_impact_takes_is_its_impulses_times_the_means_of_its_
         impulse * (event.rates[name].before + event.rates[name].after) / 2 for name, impulse in event.impulses.items()
     )
     assert event.energy_loss == pytest.approx(-work, rel=1e-14)
+
+
+@pytest.mark.parametrize("aside", ["-3", "2"])
+def test_bounces_of_which_the_slip_turns_are_not_summed_up_as_if_it_were_straight(aside: str) -> None:
+    """A point bounces on a rough floor in space, drawn beside its slip: each impulse of friction has its own direction.
+
+    Arc by arc in eighty digits: the impulse of friction is 0.3 times that of the floor, against the slip before it.
+    """
+    with mpmath.workdps(80):
+        gain, place, rate = mpmath.mpf(aside), mpmath.matrix(2, 1), mpmath.matrix([2, 1])
+        time = arc = mpmath.sqrt(mpmath.mpf("0.16"))
+        up = -10 * arc
+        for _ in range(300):
+            place += arc * rate + mpmath.matrix([0, gain * arc**2 / 2])
+            rate[1] += gain * arc
+            rate -= mpmath.mpf("0.45") * -up / mpmath.norm(rate) * rate
+            arc = -up / 10
+            time, up = time + arc, up / 2
+        settles, right = float(time), [np.array([float(x) for x in vector]) for vector in (place, rate)]
+    scene = {
+        "gravity": [0, aside, -10],
+        "bodies": {"p": {"mass": 1, "at": [0, 0, "0.8"], "velocity": [2, 1, 0]}},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+            | {"restitution": 0.5, "friction": 0.3}
+        ],
+    }
+    answer = solve_scene(read(scene), [settles, 1.3])
+    assert [event.kind for event in answer.events][-1] == "settle"
+    for name, value in zip(("p.position", "p.velocity"), right, strict=True):
+        own = column(answer, name)
+        assert np.abs(own.values[0][:2] - value).max() <= own.error + 4e-16
