@@ -129,6 +129,17 @@ def size(poly: Poly, at: Sequence[Ball]) -> Ball:
     return total
 
 
+def change_by(poly: Poly, at: Sequence[Ball], sizes: Sequence[Ball]) -> Ball:
+    """Return by how much a polynomial changes at most, to first order, where every coordinate changes by its size.
+
+    Of one of degree one its constant may change by itself, too. That of a quadratic is left out: the square of a
+    distance far from the origin is a small difference of large terms, but no place is known worse for that.
+    """
+    if degree(poly) < 2:
+        return size(poly, sizes)
+    return sum((abs(evaluated(slope, at) * sizes[j]) for j, slope in gradient(poly).items()), ZERO)
+
+
 def degree(poly: Poly) -> int:
     """Return the degree, -1 of the zero polynomial."""
     return max(map(len, poly), default=-1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from core.balls import as_text
 from core.errors import PlacesDisagree
-from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero, size
+from core.multibody.algebra.polynomials import ZERO, change_by, evaluated, is_zero
 from core.multibody.contacts.contact_responses import rate_along
 from core.multibody.contacts.projection import project
 from core.multibody.equations.assembly import assemble_places, assemble_rates
@@ -16,7 +16,8 @@ from core.multibody.table.facing import facing
 from core.multibody.table.table import Row
 
 TOUCHING = 1e-9
-"""Gap, relative to its terms, below which something touches at the start; and rates below which it is at rest."""
+"""Relative change of coordinates by which a gap may be closed of what touches at the start; and rates, relative to
+their terms, below which it is at rest."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def assemble_contacts(base: Described) -> ContactStart:
     unilateral[:] = facing(unilateral, table.q, table.v, TOUCHING)
     touching = []
     for i, one in enumerate(unilateral):
-        gap, scale = evaluated(one.gap, table.q), size(one.gap, table.q)
+        gap, scale = evaluated(one.gap, table.q), change_by(one.gap, table.q, table.q)
         if one.facets and not one.region:
             # It is above an edge.
             continue

@@ -8,7 +8,7 @@ from flint import arb, arb_mat
 
 from core.balls import as_text
 from core.errors import InvalidParameter, NotApplicable, Path, PlacesDisagree
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, change_by, evaluated, is_zero, size
 from core.multibody.algebra.rank import Elimination, Line, independent
 from core.multibody.table.frames import Given
 from core.multibody.table.measures import CLOSE
@@ -44,7 +44,7 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
     for row, residual in zip(rows, residuals, strict=True):
         if is_zero(residual):
             continue
-        scale = size(row.measure or {}, extents)
+        scale = change_by(row.measure or {}, table.q, extents)
         if not abs(residual) < CLOSE * scale:
             raise PlacesDisagree(
                 paths.get(row.name, ()),

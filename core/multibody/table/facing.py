@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, gradient, is_zero, size
+from core.multibody.algebra.polynomials import ZERO, Ball, Poly, change_by, evaluated, gradient, is_zero
 from core.multibody.table.connection_effects import Facet, Unilateral
 
 
@@ -49,7 +49,7 @@ class _State:
 
     def value(self, poly: Poly) -> Ball:
         found = evaluated(poly, self.q)
-        rounded = self.share and bool(abs(found) < self.share * size(poly, self.q))
+        rounded = self.share and bool(abs(found) < self.share * change_by(poly, self.q, self.q))
         return ZERO if is_zero(found) or rounded else found
 
     def rate(self, poly: Poly) -> Ball:

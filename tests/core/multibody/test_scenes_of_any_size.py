@@ -174,3 +174,37 @@ def test_a_ladder_with_one_rough_end_slides_down_and_leaves_the_wall(
     assert answer.problem is None
     assert kinds(answer)[0] == ("lift-off", "wall")
     assert answer.events[0].time == pytest.approx(lifted, rel=1e-9)
+
+
+def _bead_in_a_ring(place: str, more: list[str]) -> dict[str, Any]:
+    ring = {"kind": "contact", "name": "c", "place": "a", "on": {"at": [place, place, *more], "radius": -1}}
+    at = [f"{place} + 0.3", f"{place} + 0.2", *more]
+    return {"gravity": [0, -10, *["0"] * len(more)], "bodies": {"a": {"mass": 1, "at": at}}, "connections": [ring]}
+
+
+def _balls_that_meet(place: str, more: list[str]) -> dict[str, Any]:
+    nought = ["0"] * len(more)
+    ball = {"mass": 1, "radius": "0.1"}
+    return {
+        "gravity": [0, 0, *nought],
+        "bodies": {
+            "a": {**ball, "at": [place, place, *more], "velocity": [1, 0, *nought]},
+            "b": {**ball, "at": [f"{place} + 1", place, *more]},
+        },
+        "connections": [{"kind": "contact", "name": "c", "a": "a", "b": "b", "restitution": 0.5}],
+    }
+
+
+@pytest.mark.parametrize(
+    ("scene", "space"), [(_bead_in_a_ring, False), (_balls_that_meet, False), (_balls_that_meet, True)]
+)
+@pytest.mark.parametrize("place", ["1e3", "-1e5", "1e6", "1e7"])
+def test_what_does_not_touch_far_from_the_origin_is_not_put_in_touch(scene: Any, space: bool, place: str) -> None:
+    """Squares of distances are small differences of large terms there: a metre was nothing beside them."""
+    near, far = (
+        solve_scene(read(scene(at, [at] if space else [])), [0.0, 1.0], ("trajectory",), 1e-3) for at in ("0", place)
+    )
+    assert [(event.kind, event.name) for event in far.events] == [("touch", "c")]
+    assert far.events[0].time == pytest.approx(near.events[0].time, rel=1e-12)
+    own, other = column(far, "a.position"), column(near, "a.position")
+    assert np.abs(own.values - float(place) - other.values).max() <= own.error + other.error
