@@ -30,9 +30,10 @@ which the difference states the error. `make references` computes all of them an
 estimates, not proofs, and smaller than what the last printed digit is worth.
 
 The last column is the published figure less ours: published digits beyond it are not those of the problem. A source
-that integrated in doubles prints more digits than it knows. Two problems are computed by other formulations of the
+that integrated in doubles prints more digits than it knows. Some problems are computed by other formulations of the
 equations in [a test](../tests/benchmarks/test_references.py), which confirm the figures here: the squeezing mechanism
-in its seven angles, and the car axis in extended precision.
+in its seven angles, the car axis in extended precision, Bricard's mechanism by its energy, the top by Euler's
+equations, and the pendulums in their angles.
 """
 
 

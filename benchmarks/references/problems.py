@@ -240,4 +240,136 @@ SQUEEZER = Problem(
     },
 )
 
-PROBLEMS = (PLEIADES, ARENSTORF, BURRAU, EIGHT, CAR_AXIS, SQUEEZER)
+HEAVY_TOP = Problem(
+    "Heavy top of Géradin and Cardona",
+    "M. Géradin and A. Cardona, Flexible Multibody Dynamics, 2001; data as in O. Brüls, A. Cardona and M. Arnold, "
+    "Mechanism and Machine Theory 48 (2012), and in the documentation of Kynema",
+    {
+        "gravity": [0, 0, "-9.81"],
+        "bodies": {
+            "top": {
+                "mass": 15,
+                "moments": ["0.234375", "0.234375", "0.46875"],
+                "at": [0, 1, 0],
+                "axes": [[1, 0, 0], [0, 0, 1], [0, -1, 0]],
+                "angular_velocity": ["-4.61538", 0, 150],
+                "places": {"tip": [0, 0, 1]},
+            }
+        },
+        "connections": [{"kind": "ball-joint", "a": "top.tip", "b": [0, 0, 0]}],
+    },
+    "2",
+    ("top.x", "top.y", "top.z"),
+    {},
+    "Published as plots and errors against finer runs.",
+)
+
+BOX_MASS = "7700*0.5*0.06^2"
+BOX_INERTIA = f"{BOX_MASS}*(0.5^2 + 0.06^2)/12"
+"""Of a box of 0.5 m by 0.06 m by 0.06 m, with the density that the library's `BodyBox` has if none is given."""
+
+
+def _box(x: str) -> dict[str, Any]:
+    places = {"a": ["-0.25", 0], "b": ["0.25", 0]}
+    return {"mass": BOX_MASS, "inertia": BOX_INERTIA, "at": [x, 0], "places": places}
+
+
+MODELICA_PENDULUM = Problem(
+    "Double pendulum of Modelica's library",
+    "Modelica Standard Library, Modelica.Mechanics.MultiBody.Examples.Elementary.DoublePendulum, which stops at 3 s",
+    {
+        "gravity": [0, "-9.81"],
+        "bodies": {"box1": _box("0.25"), "box2": _box("0.75")},
+        "connections": [
+            _pin("box1.a", [0, 0]),
+            {"kind": "damper", "a": "box1", "measure": "turn", "coefficient": "0.1"},
+            _pin("box2.a", "box1.b"),
+        ],
+    },
+    "3",
+    ("box1.x", "box1.y", "box2.x", "box2.y"),
+    {},
+    "The library has no figures of its own: its regression tests compare releases.",
+)
+
+CHRONO_PENDULUM = Problem(
+    "Pendulum about an oblique axis, from Chrono's tests",
+    "Project Chrono, data/testing/joints: test_Revolute_Case02.adm, with the positions that ADAMS computes",
+    {
+        "gravity": [0, 0, "-9.80665"],
+        "bodies": {
+            "pendulum": {
+                "mass": 1,
+                "moments": ["0.04", "0.1", "0.1"],
+                "at": [3, 2, 3],
+                "axes": [[1, 0, 0], [0, "sqrt(2)/2", "-sqrt(2)/2"], [0, "sqrt(2)/2", "sqrt(2)/2"]],
+                "places": {"joint": [-2, 0, 0]},
+            }
+        },
+        "connections": [{"kind": "pin", "a": "pendulum.joint", "b": [1, 2, 3], "axis": [0, 1, 1]}],
+    },
+    "2.5",
+    ("pendulum.x", "pendulum.y", "pendulum.z"),
+    {"pendulum.x": "-0.8468880", "pendulum.y": "2.542680", "pendulum.z": "2.457320"},
+)
+
+CHRONO_BALL_JOINT = Problem(
+    "Pendulum on a ball joint, from Chrono's tests",
+    "Project Chrono, data/testing/joints: test_Spherical_Case02.adm, with the positions that ADAMS computes",
+    {
+        "gravity": [0, 0, "-9.80665"],
+        "bodies": CHRONO_PENDULUM.scene["bodies"],
+        "connections": [{"kind": "ball-joint", "a": "pendulum.joint", "b": [1, 2, 3]}],
+    },
+    "2.5",
+    ("pendulum.x", "pendulum.z"),
+    {"pendulum.x": "0.7344940", "pendulum.z": "1.017700"},
+)
+
+BRICARD_PLACES = {"A": (0, 0, 0), "B": (1, 0, 0), "C": (1, -1, 0), "D": (1, -1, 1), "E": (0, -1, 1), "F": (0, 0, 1)}
+BRICARD_AXES = {"A": (0, 1, 0), "B": (0, 0, 1), "C": (1, 0, 0), "D": (0, 1, 0), "E": (0, 0, 1), "F": (1, 0, 0)}
+
+
+def _rod(ends: str) -> dict[str, Any]:
+    """Return a rod of 1 m with a cross section of 0.1 m by 0.1 m between two of the joints."""
+    first, last = (BRICARD_PLACES[end] for end in ends)
+    along = next(k for k in range(3) if first[k] != last[k])
+    half = [f"({last[k]} - ({first[k]}))/2" for k in range(3)]
+    return {
+        "mass": 1,
+        "moments": ["0.02/12" if k == along else "1.01/12" for k in range(3)],
+        "at": [f"({first[k]} + {last[k]})/2".replace("+ -", "- ") for k in range(3)],
+        "places": {ends[0]: [f"-{x}" for x in half], ends[1]: half},
+    }
+
+
+def _hinge(a: str, b: Any, joint: str) -> dict[str, Any]:
+    return {"kind": "pin", "a": f"{a}.{joint}", "b": b, "axis": list(BRICARD_AXES[joint])}
+
+
+BRICARD = Problem(
+    "Bricard's mechanism",
+    "IFToMM's library of benchmark problems, A04; data as in RehabEngGroup's MBSbenchmarksInOpenSim, joints as in M. "
+    "Taylor's example for Chrono",
+    {
+        "gravity": [0, "-9.81", 0],
+        "bodies": {name.lower(): _rod(name) for name in ("AB", "BC", "CD", "DE", "EF")},
+        "connections": [
+            _hinge("ab", list(BRICARD_PLACES["A"]), "A"),
+            *(
+                _hinge(a, f"{b}.{j}", j)
+                for a, b, j in zip(("bc", "cd", "de", "ef"), ("ab", "bc", "cd", "de"), "BCDE", strict=True)
+            ),
+            _hinge("ef", list(BRICARD_PLACES["F"]), "F"),
+        ],
+    },
+    "1",
+    ("ab.x", "ab.z", "bc.x", "bc.y", "bc.z", "cd.x", "cd.y", "cd.z"),
+    {},
+    "Six hinges hold five rods redundantly, and leave one degree of freedom. Published as plots over 10 s.",
+)
+
+PROBLEMS = (
+    *(PLEIADES, ARENSTORF, BURRAU, EIGHT, CAR_AXIS, SQUEEZER),
+    *(HEAVY_TOP, MODELICA_PENDULUM, CHRONO_PENDULUM, CHRONO_BALL_JOINT, BRICARD),
+)

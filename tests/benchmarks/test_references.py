@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from decimal import Decimal
@@ -13,7 +14,21 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from benchmarks.references.__main__ import PAGE, Reference, computed, shown
-from benchmarks.references.problems import CAR_AXIS, PROBLEMS, SQUEEZER, SQUEEZER_ANGLES, SQUEEZER_LENGTHS, Problem
+from benchmarks.references.problems import (
+    BRICARD,
+    BRICARD_AXES,
+    BRICARD_PLACES,
+    CAR_AXIS,
+    CHRONO_BALL_JOINT,
+    CHRONO_PENDULUM,
+    HEAVY_TOP,
+    MODELICA_PENDULUM,
+    PROBLEMS,
+    SQUEEZER,
+    SQUEEZER_ANGLES,
+    SQUEEZER_LENGTHS,
+    Problem,
+)
 
 
 @cache
@@ -35,7 +50,8 @@ def test_the_page_has_the_figures_of_today(problem: Problem) -> None:
 
 
 def test_published_figures_agree_to_the_digits_that_the_page_says() -> None:
-    for problem, digits in ((PROBLEMS[0], 2e-15), (PROBLEMS[1], 1e-21), (CAR_AXIS, 6e-12), (SQUEEZER, 2e-9)):
+    adams = ((CHRONO_PENDULUM, 2e-6), (CHRONO_BALL_JOINT, 2e-6))
+    for problem, digits in ((PROBLEMS[0], 2e-15), (PROBLEMS[1], 1e-21), (CAR_AXIS, 6e-12), (SQUEEZER, 2e-9), *adams):
         for name, published in problem.published.items():
             assert abs(Decimal(published) - figures(problem.name)[name].value) < Decimal(digits)
 
@@ -155,3 +171,123 @@ def test_the_car_axis_in_extended_precision() -> None:
     for found, (name, published) in zip(y, CAR_AXIS.published.items(), strict=True):
         assert abs(found - np.longdouble(str(ours[name].value))) < 1e-15
         assert abs(found - np.longdouble(published)) > 3e-15
+
+
+def by_doubles(rates: Callable[[float, Any], Any], start: Any, end: float) -> Any:
+    return solve_ivp(rates, (0.0, end), start, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+
+
+def confirmed(problem: Problem, expected: dict[str, float], within: float) -> None:
+    for name, value in expected.items():
+        assert float(figures(problem.name)[name].value) == pytest.approx(value, abs=within), name
+
+
+def test_the_heavy_top_by_euler_s_equations() -> None:
+    """In body axes about the tip: J w' = J w x w + r x R^T (0, 0, -m g), with the rotation as a matrix."""
+    inertia, arm = np.array([15.234375, 15.234375, 0.46875]), np.array([0, 0, -1.0])
+
+    def rates(_: float, y: Any) -> Any:
+        omega, turn = y[:3], y[3:].reshape(3, 3)
+        torque = np.cross(arm, turn.T @ [0, 0, -15 * 9.81])
+        across = np.array([[0, -omega[2], omega[1]], [omega[2], 0, -omega[0]], [-omega[1], omega[0], 0]])
+        return np.concatenate([(np.cross(inertia * omega, omega) + torque) / inertia, (turn @ across).ravel()])
+
+    y = by_doubles(rates, [-4.61538, 0, 150, 1, 0, 0, 0, 0, -1, 0, 1, 0], 2.0)
+    confirmed(HEAVY_TOP, dict(zip(HEAVY_TOP.figures, y[3:].reshape(3, 3) @ arm, strict=True)), 1e-9)
+
+
+def test_pendulums_in_their_angles() -> None:
+    """Lagrange's equations of two angles; and theta'' = m g' l cos theta/(I + m l^2) from the horizontal."""
+    m, length = 7700 * 0.5 * 0.06**2, 0.5
+    inertia = m * (length**2 + 0.06**2) / 12
+
+    def rates(_: float, y: Any) -> Any:
+        one, two, u, v = y
+        mass = np.array([[inertia + 1.25 * m * length**2, 0.5 * m * length**2 * np.cos(one - two)], [0, 0]])
+        mass[1] = [mass[0, 1], inertia + 0.25 * m * length**2]
+        pull = 0.5 * m * length**2 * np.sin(one - two)
+        right = [-pull * v * v - 1.5 * m * 9.81 * length * np.cos(one) - 0.1 * u]
+        right.append(pull * u * u - 0.5 * m * 9.81 * length * np.cos(two))
+        return [u, v, *np.linalg.solve(mass, right)]
+
+    one, two, *_ = by_doubles(rates, [0, 0, 0, 0], 3.0)
+    middle = {"box1.x": np.cos(one) / 4, "box1.y": np.sin(one) / 4}
+    last = {"box2.x": np.cos(one) / 2 + np.cos(two) / 4, "box2.y": np.sin(one) / 2 + np.sin(two) / 4}
+    confirmed(MODELICA_PENDULUM, middle | last, 1e-10)
+    for problem, share in ((CHRONO_PENDULUM, np.sqrt(0.5)), (CHRONO_BALL_JOINT, 1.0)):
+        fall = 2 * 9.80665 * share / 4.1
+        angle, _ = by_doubles(lambda _, y, fall=fall: [y[1], fall * np.cos(y[0])], [0, 0], 2.5)
+        down = 2 * np.sin(angle) * share
+        confirmed(problem, {"pendulum.x": 1 + 2 * np.cos(angle), "pendulum.z": 3 - down}, 1e-10)
+
+
+RODS = ("ab", "bc", "cd", "de", "ef")
+
+
+def turned(axis: Any, angle: float) -> Any:
+    x, y, z = axis
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * across @ across
+
+
+def chain(angles: Any) -> tuple[list[Any], list[Any], Any]:
+    """Return the rotations of Bricard's rods, the places of their joints and the axis of the last hinge."""
+    at, axes = ({name: np.array(v, float) for name, v in given.items()} for given in (BRICARD_PLACES, BRICARD_AXES))
+    turns, joints, turn = [], [at["A"]], np.eye(3)
+    for k in range(5):
+        turn = turn @ turned(axes["ABCDE"[k]], angles[k])
+        turns.append(turn)
+        joints.append(joints[-1] + turn @ (at["BCDEF"[k]] - at["ABCDE"[k]]))
+    return turns, joints, turn @ axes["F"]
+
+
+def closed(first: float, guess: Any) -> Any:
+    """Return the angles of the other hinges, by least squares of six equations: two of them follow from the others."""
+
+    def miss(others: Any) -> Any:
+        _, joints, axis = chain([first, *others])
+        return np.concatenate([joints[5] - BRICARD_PLACES["F"], axis - BRICARD_AXES["F"]])
+
+    others = np.array(guess, float)
+    for _ in range(12):
+        slopes = np.array([(miss(others + s) - miss(others - s)) / 2e-6 for s in 1e-6 * np.eye(4)]).T
+        others = others - np.linalg.lstsq(slopes, miss(others), rcond=1e-6)[0]
+    assert np.abs(miss(others)).max() < 1e-11
+    return others
+
+
+def energies(first: float, others: Any) -> tuple[float, float]:
+    """Return twice the kinetic energy at a rate of one of the first hinge, and the potential energy."""
+    h, total = 1e-3, 0.0
+    (r0, a0, _), (r1, a1, _) = (chain([first + step, *closed(first + step, others)]) for step in (-h, h))
+    _, at, _ = chain([first, *others])
+    for k, rod in enumerate(RODS):
+        velocity = (a1[k] + a1[k + 1] - a0[k] - a0[k + 1]) / (4 * h)
+        spin = (r0[k].T @ r1[k] - r1[k].T @ r0[k]) / 2
+        # The rotation between two places is exp of its axis by its angle, whose sine this is.
+        sine = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
+        size = float(np.linalg.norm(sine))
+        omega = sine / size * np.arcsin(size) / (2 * h) if size else sine
+        moments = [0.02 / 12 if "0.02" in text else 1.01 / 12 for text in BRICARD.scene["bodies"][rod]["moments"]]
+        total += velocity @ velocity + omega @ (moments * omega)
+    return total, sum(9.81 * (at[k][1] + at[k + 1][1]) / 2 for k in range(5))
+
+
+def test_bricard_s_mechanism_by_its_energy() -> None:
+    """All angles follow from that of the first hinge, and the time is the integral of its rate by the energy."""
+    ours = {name: float(one.value) for name, one in figures(BRICARD.name).items()}
+    last = math.atan2(-ours["ab.z"], ours["ab.x"])
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    rest, others, time = energies(0.0, closed(0.0, np.zeros(4)))[1], np.zeros(4), 0.0
+    # From rest the angle grows as the square of the time: its root is the variable.
+    for s, weight in zip((nodes + 1) / 2, weights / 2, strict=True):
+        first = last * s * s
+        others = closed(first, others)
+        doubled, potential = energies(first, others)
+        time += weight * 2 * abs(last) * s * math.sqrt(doubled / (2 * (rest - potential)))
+    assert time == pytest.approx(1.0, abs=1e-5)
+    _, joints, _ = chain([last, *closed(last, others)])
+    for k in (1, 2):
+        middle = (joints[k] + joints[k + 1]) / 2
+        expected = [ours[f"{RODS[k]}.{axis}"] for axis in "xyz"]
+        assert middle == pytest.approx(expected, abs=1e-9)
