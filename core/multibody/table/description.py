@@ -27,6 +27,7 @@ from core.multibody.table import (
 )
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.coordinates import Coordinates, dimension_of
+from core.multibody.table.massless_places import balance_massless_places
 from core.multibody.table.measures import Measures
 from core.multibody.table.moving_places import driven_works
 from core.multibody.table.rows import add_rows
@@ -95,6 +96,7 @@ def described(
             measures.works.extend(driven)
             measures.conservative = measures.conservative and not driven
     faults.raised()
+    balance_massless_places(measures)
     if "gravity" not in paths:
         measures.works.extend(_weight(measures))
     return Described(scene, measures, paths)
