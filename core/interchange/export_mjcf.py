@@ -238,13 +238,15 @@ class _Writing:
 
     @write.register
     def _(self, one: String, name: str, path: Path) -> None:
+        if one.drive is not None:
+            self.leave_out(path, name, "a length that changes by time needs an actuator and a controller")
         drums = [place for place in one.through if isinstance(place, dict) or self.surroundings.rim(place)]
         if drums or len(one.through) < 2:
             self.leave_out(path, name, "MuJoCo has no strings that wind on drums or rub on pegs")
             return
         points = [self.numbers.place(place, path)[1] for place in one.through]
         length = sum(float(np.linalg.norm(q - p)) for p, q in pairwise(points))
-        given = getattr(one, "length", None)
+        given = one.length
         length = length if given is None else self.numbers.number(given, (*path, "length"))
         self.tendon(name, one.through, path, limited="true", range=f"0 {length!r}", margin=MARGIN)
 

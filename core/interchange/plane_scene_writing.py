@@ -69,7 +69,7 @@ class PlaneSceneWriting(SceneWriting):
         return super().held(joint, ends, parent)
 
     def torsion(self, joint: DraftJoint) -> list[dict[str, Any]]:
-        """Return the spring of the turn of a hinge."""
+        """See `SceneWriting.torsion`; in the plane angles are those of the bodies."""
         turn = self._angle(joint.child) - (0.0 if joint.parent is None else self._angle(joint.parent))
         sign = self.sign * float(np.sign(joint.axes[-1][self.normal]))
         spring = {"kind": "torsion-spring", "a": self.whole(joint.child), "b": self.whole(joint.parent)}

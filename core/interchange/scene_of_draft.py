@@ -28,13 +28,10 @@ def scene_of(draft: Draft) -> dict[str, Any]:
         For joints of the plane in a model that does not move in one, and bodies without mass that move, with the line.
     """
     special = next((joint for joint in draft.joints if joint.kind in OF_THE_PLANE), None)
-    if special is None and not any(joint.stiffness and joint.kind == "hinge" for joint in draft.joints):
+    if special is None:
         return SceneWriting(draft).scene()
     plane = next((plane for plane in PLANES if _holds_in(draft, plane[0])), None)
-    if plane is None and special is None:
-        return SceneWriting(draft).scene()
     if plane is None:
-        assert special is not None, "a joint of the plane asked for it"
         raise InvalidParameter(
             DOCUMENT,
             "be a model that can be read; "

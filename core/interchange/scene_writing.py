@@ -204,11 +204,9 @@ class SceneWriting:
         return []
 
     def torsion(self, joint: DraftJoint) -> list[dict[str, Any]]:
-        """Leave out the spring of a hinge."""
-        self.draft.left_out.append(
-            LeftOut(joint.line, joint.name, "there is no spring of a turn in space", changes_motion=True)
-        )
-        return []
+        """Return the spring of the turn of a hinge, which is zero at the start."""
+        ends = {"a": self.whole(joint.child), "b": self.whole(joint.parent)}
+        return [{"kind": "torsion-spring", **ends, "stiffness": joint.stiffness, "rest_angle": joint.rest}]
 
     def along(self, joint: DraftJoint, parent: str | None) -> list[dict[str, Any]]:
         """Return the force of a spring and a damper along a slide on the ground."""
