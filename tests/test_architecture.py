@@ -371,6 +371,7 @@ TESTED_IN |= {
         ),
         "table/test_supports": "table/rolling_on_planes",
         "table/test_level_rims": "audit/level_rims phases/level_phases",
+        "table/test_ball_on_box": "audit/ball_on_box",
         "table/test_strings": "table/string_measures",
         "table/test_contact_geometry_in_space": ("contacts/slip_directions phases/turning_pieces"),
         "statics/test_exact_places": "statics/places_beside statics/small_motions",

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from core.multibody.audit.ball_on_box import OnBox
 from core.multibody.audit.bodies import Outline, Path, Reader
 from core.multibody.audit.coefficients import touch_of
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
@@ -19,6 +20,9 @@ from core.multibody.audit.surfaces import Face, Round, Tip
 from core.multibody.audit.turns_in_space import AxialStop, axis_between
 from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.written import GROUND
+
+BOX = 8
+"""Corners of a box; other shapes of space have two at most."""
 
 
 @definition_of.register
@@ -40,6 +44,9 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
         return Stop(name, both, first, other, limit, 1 if least else -1, touch)
     if connection.place is None:
         a, b = (reader.outline(getattr(connection, end), (*path, end)) for end in "ab")
+        if reader.dimension == 3 and max(len(a.corners), len(b.corners)) == BOX:
+            ball, box = (b, a) if len(a.corners) == BOX else (a, b)
+            return _on_box(name, ball, box, touch)
         return _by_corners(name, [*_between(name, a, b, touch)])
     own, on = reader.outline(connection.place, (*path, "place")), connection.surface
     where = (*path, "on")
@@ -52,6 +59,15 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
     tips = [Tip(place, own.radius, own.semi_axes) for place in own.corners] if rim is None else list(rim.tips)
     found = _by_corners(name, [OnFace(name, (*tip.place.bodies, *at.bodies), touch, tip, face) for tip in tips])
     return found if rim is None else Both(name, found.bodies, found, rim)
+
+
+def _on_box(name: str, ball: Outline[Place], box: Outline[Place], touch: Touch) -> OnBox:
+    """Return the contact of a ball and a box, whose corners are in order of their faces."""
+    (place,), low, high = ball.corners, box.corners[0], box.corners[6]
+    ends = list(zip(low.offset, high.offset, strict=True))
+    middle = Place(low.body, tuple((x + y) / 2.0 for x, y in ends))
+    half = tuple((y - x) / 2.0 for x, y in ends)
+    return OnBox(name, (*place.bodies, *middle.bodies), touch, place, middle, half, ball.radius)
 
 
 def _between(name: str, a: Outline[Place], b: Outline[Place], touch: Touch) -> Iterator[OnRound | OnOutline]:

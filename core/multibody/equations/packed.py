@@ -158,6 +158,13 @@ def _arms(table: Table) -> Iterator[int | None]:
         yield from (e - max(places) for j, e in constant.items() if places and table.units[j] in ("1", "rad"))
 
 
+def _gyration(table: Table) -> list[int]:
+    """Return the exponent of the radius of gyration of the heaviest bodies; nothing where none turns."""
+    diagonal = [(table.units[i], exponent(x)) for (i, j), x in table.mass.items() if i == j]
+    moves, turns = (_most([e for unit, e in diagonal if unit in units]) for units in (("m",), ("1", "rad")))
+    return [] if moves is None or turns is None else [(turns - moves) // 2]
+
+
 def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     """Return units in which coordinates, rates and masses are of the order of one."""
     sizes = [exponent(x) for i, x in enumerate(table.q) if table.units[i] == "m"]
@@ -189,7 +196,10 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         ways.append(2 * rate - pull)
     if times and (rate is not None or pull is not None):
         ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
-    if size is None or (ways and size < min(ways) + AT_ORIGIN):
+    # A turn that is nothing but rounding makes ways without end, and does not put at the origin what is farther from it
+    # than a body is large.
+    large = _most(_gyration(table))
+    if size is None or (ways and size < min(ways) + AT_ORIGIN and (large is None or size < large + AT_ORIGIN)):
         size = min(ways, default=None)
     arm = _most(list(_arms(table)))
     if arm is not None and size is not None and size < arm - KNOWN:

@@ -132,11 +132,17 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
     return models_of(found, moved, fitted)
 
 
-def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
-    """Return the models of a table whose start meets its rows."""
+def models_of(found: Described, moved: list[str], fitted: list[str], rounding: float = 0.0) -> Modelled:
+    """Return the models of a table whose start meets its rows.
+
+    Parameters
+    ----------
+    rounding : float
+        Share of the largest rate or acceleration (SI units) up to which one may be rounding: that is no direction.
+    """
     small = _upright(found)
     pieces, accelerations, full = _start_of(found, small)
-    turned = _turned(found, small, full)
+    turned = _turned(found, small, full, rounding)
     if turned is not None:
         small = turned
         pieces, accelerations, full = _start_of(found, small)
@@ -202,7 +208,7 @@ def _upright(found: Described) -> Reduced:
     return further(turned_to(table, vectors, [axes] * len(vectors)), pinning=True)
 
 
-def _turned(found: Described, small: Reduced, accelerations: Sequence[Ball]) -> Reduced | None:
+def _turned(found: Described, small: Reduced, accelerations: Sequence[Ball], rounding: float) -> Reduced | None:
     """Return a scene reduced along the axes of its plane and of lines, where these leave less of it."""
     coordinates, table = found.measures.coordinates, found.measures.table
     vectors, gravity = coordinates.vectors, coordinates.gravity
@@ -211,6 +217,9 @@ def _turned(found: Described, small: Reduced, accelerations: Sequence[Ball]) -> 
         # What starts along a line may leave it later.
         places = expansion(small.table, _LATER).places
         derivatives += [small.directions([place[k] for place in places]) for k in range(3, _LATER + 1)]
+    if rounding:
+        least = rounding * max((abs(float(x)) for one in derivatives for x in one), default=0.0)
+        derivatives = [[ZERO if abs(float(x)) < least else x for x in one] for one in derivatives]
     plane = None
     if coordinates.dimension == 3:
         plane = plane_axes(_moving(coordinates.positions, derivatives), gravity)

@@ -27,6 +27,9 @@ from core.multibody.table.description import Described
 from core.multibody.table.law_pieces import Argument, switching
 from core.systems.trajectory import MotionEvent
 
+ROUNDING = 2.0**-90
+"""Share of the largest rate or acceleration up to which one may be what pairs of doubles (2^-106) leave of zero."""
+
 
 @dataclass
 class Phase:
@@ -241,14 +244,16 @@ def phase_of(
                     for both in zip((table.q, table.v), known, strict=True)
                 ]
                 tracks.lose(*lost)
-        models.append(model_of(base, found, phase, start))
+        models.append(model_of(base, found, phase, start, 0.0 if tracks.exact else ROUNDING))
         each.append(Track(track.time, phase.table.q, phase.table.v))
         tables.append(phase)
     unknown = tracks.lost if any(map(any, tracks.lost)) else None
     return Phase(each, models, tables, found.states, found.unilateral, unknown, openings=opening)
 
 
-def model_of(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:
+def model_of(
+    base: Described, decided: Decided, phase: PhaseTable, start: ContactStart, rounding: float = 0.0
+) -> Modelled:
     """Return the models of the table of a phase; a series runs in pairs, judged by a coarser one.
 
     Raises
@@ -263,7 +268,7 @@ def model_of(base: Described, decided: Decided, phase: PhaseTable, start: Contac
     if any(row.slide is not None for row in phase.table.rows):
         found = turning_model(own, decided.unilateral, phase.normal, start)
     else:
-        found = models_of(own, start.moved, start.fitted)
+        found = models_of(own, start.moved, start.fitted, rounding)
         for _, motion in found.whole.parts:
             motion.keep_to_pairs()
     for kept in measures.kept:

@@ -56,6 +56,7 @@ def contact(connection: Contact, measures: Measures, name: str, path: Path) -> N
                 across=None if touching.slips is None else touching.slips[1],
                 tangents=touching.tangents,
                 rolls=touching.rolls,
+                facets=touching.facets,
                 order=ZERO if touching.together and order is None else order,
             )
             for touching in contact_in_space(measures, connection, name, path, rubs=rubs)

@@ -25,6 +25,8 @@ from core.multibody.algebra.polynomials import (
     is_zero,
 )
 from core.multibody.language.contacts import Contact
+from core.multibody.table.ball_on_box import facets_of_box, is_box
+from core.multibody.table.connection_effects import Facet
 from core.multibody.table.contact_places import Side, gap_of_rims, is_on, place_on, refuse_limits, two_sides
 from core.multibody.table.level_rims import with_places
 from core.multibody.table.measures import Measures
@@ -46,6 +48,8 @@ class Touching:
         Whether sticking is rolling.
     together : bool
         Whether it is one of several places that land at once.
+    facets : tuple of Facet
+        What a ball may meet of a box.
     """
 
     gap: Poly
@@ -53,6 +57,7 @@ class Touching:
     tangents: tuple[Sequence[Ball], Sequence[Ball]] | None
     rolls: bool
     together: bool = False
+    facets: tuple[Facet, ...] = ()
 
 
 def contact_in_space(measures: Measures, connection: Contact, name: str, path: Path, *, rubs: bool) -> list[Touching]:
@@ -69,6 +74,10 @@ def contact_in_space(measures: Measures, connection: Contact, name: str, path: P
     if is_on(connection, path):
         return _on(measures, connection, name, path, rubs=rubs)
     first, second = two_sides(measures, connection, path)
+    for ball, box in ((first, second), (second, first)):
+        if not rubs and ball.single and is_box(box) and bool(ball.radius >= 0):
+            facets = facets_of_box(measures, name, ball, box, path)
+            return [Touching(facets[0].gap, None, None, ball.round, facets=facets)]
     return _round(first, second, path, rubs=rubs)
 
 
