@@ -15,6 +15,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 from core.errors import InvalidParameter, Path
@@ -26,6 +27,8 @@ DEEPEST = 20
 """Parentheses, signs and powers inside one another."""
 LARGEST_EXPONENT = 400
 """Of ten, in a number."""
+READ = 1024
+"""Texts whose names are remembered: those of a request are looked at several times, in some 0.5 MB."""
 
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "abs")
 ARGUMENTS = {"atan2": 2, "min": 2, "max": 2, "sign": 1, "if": 3}
@@ -213,6 +216,7 @@ def is_formula(text: str, known: Collection[str]) -> bool:
     return True
 
 
+@lru_cache(maxsize=READ)
 def names_in(text: str) -> frozenset[str]:
     """Return what stands as a name or function in a text; nothing of what is no formula."""
     try:

@@ -120,7 +120,10 @@ def force_by_formulas(connection: AppliedForce, measures: Measures, name: str, p
     point = measures.coordinates.point(connection.place, (*path, "place"))
     if point.body is None:
         raise InvalidParameter((*path, "place"), "belong to a body")
-    formulas = [written(measures, value, names, (*where, i)) for i, value in enumerate(given)]
+    formulas = [
+        of_number(measures.numerals.number(value, (*where, i))) if formula is None else formula
+        for i, (formula, value) in enumerate(zip(every, given, strict=True))
+    ]
     if connection.in_ == "body":
         found = _along_axes(measures, name, point, formulas, path)
     else:
