@@ -287,7 +287,7 @@ TESTED_IN |= {
     f"core/find/{name}.py": "core/find/test_search.py"
     for name in (
         *("borders", "evaluations", "extremes", "figures", "infinite", "minima"),
-        *("known_roots", "roots", "scanning", "solutions", "systems", "varied"),
+        *("roots", "scanning", "solutions", "systems", "varied"),
     )
 }
 TESTED_IN |= {
@@ -310,7 +310,7 @@ TESTED_IN |= {
 TESTED_IN |= {
     f"core/multibody/{name}.py": f"core/multibody/{through}.py"
     for through, names in {
-        "contacts/test_impacts": "contacts/impulses phases/accumulation phases/recurring_bounces",
+        "contacts/test_impacts": "contacts/impulses phases/accumulation",
         "audit/test_audit": (
             "audit/balanced audit/chosen_times audit/energy audit/failure audit/laws_at_samples audit/repetition "
             "audit/samples audit/start"

@@ -3,7 +3,8 @@
 References
 ----------
 D. Morin, Introduction to Classical Mechanics (2008), chapters 5 (impacts), 8 (rolling). G. Galperin, "Playing pool with
-pi", Regular and Chaotic Dynamics 8 (2003). P. Painleve, Comptes rendus 121 (1895).
+pi", Regular and Chaotic Dynamics 8 (2003). P. Painleve, Comptes rendus 121 (1895). G. W. Housner, Bulletin of the
+Seismological Society of America 53 (1963) 403.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import math
 
 import numpy as np
 import pytest
+from mpmath import acos, atan, cos, mp, mpf, quad, sin, sqrt
 
 from tests.examples.scene_columns import agree, columns, times
 
@@ -418,3 +420,35 @@ def test_the_chalk_of_painleve(answer_of):
     c, s, mu, inertia = 0.5, math.sqrt(3) / 2, 2, 0.3333
     assert 1 + c * (c - mu * s) / inertia < 0
     assert answer["trajectory"]["columns"] == {}
+
+
+def test_a_block_rocks_until_it_stands(answer_of):
+    """About a corner phi'' = -K sin(alpha - phi), K = 3 g/(4 R); an impact leaves 1 - 3/2 sin^2(alpha) of the rate."""
+    answer = answer_of("scenes/rocking-block")
+    with mp.workdps(40):
+        b, h, tilt = mpf("0.3"), mpf("0.36"), mpf("0.1")
+        alpha, k = atan(b / h), 3 * mpf("9.81") / (4 * sqrt(b * b + h * h))
+        left = 1 - 3 * sin(alpha) ** 2 / 2
+
+        def falls(most):
+            """Return the time from the largest tilt to the level; the integral is smooth in u, phi = most (1 - u^2)."""
+
+            def part(u):
+                square = 4 * k * sin(alpha - most * (2 - u * u) / 2) * sin(most * u * u / 2)
+                return 2 * u * most / sqrt(square) if u else sqrt(2 * most / (k * sin(alpha - most)))
+
+            return quad(part, [0, 1])
+
+        expected, rate = [falls(tilt)], sqrt(2 * k * (cos(alpha - tilt) - cos(alpha)))
+        for _ in range(8):
+            rate *= left
+            expected.append(expected[-1] + 2 * falls(alpha - acos(cos(alpha) + rate * rate / (2 * k))))
+    touches = [event for event in answer["events"] if event["kind"] == "touch"]
+    for event, time in zip(touches, expected, strict=False):
+        assert abs(event["time"] - time) <= event["error"] + 4e-16
+    # It stands from the limit of these times on: what is left is a geometric series.
+    assert [event["name"] for event in touches[:4]] == ["left", "right", "left", "right"]
+    assert touches[-1]["time"] == pytest.approx(
+        float(expected[-1] + (expected[-1] - expected[-2]) * left / (1 - left)), abs=1e-9
+    )
+    assert columns(answer)["block.angle"][-1] == pytest.approx(0, abs=1e-12)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf
+from mpmath import exp, mp, mpf, pi
 
 from tests.examples.scene_columns import agree, columns, in_time, times
 from tests.oracles.minimal_coordinates import cos, exact, sin, sqrt
@@ -271,3 +271,16 @@ def test_a_chain_over_a_peg_carries_its_own_weight(answer_of):
     (part,) = answer["model"]["apart"]
     rates = [(mode["frequency"], mode["growth_rate"]) for mode in part["modes"]]
     assert rates == [(0, pytest.approx(sign * float(rate), rel=EXACT)) for sign in (-1, 1)]
+
+
+def test_a_band_brake_stops_its_drum(answer_of):
+    """The fixed end is drawn by W exp(mu pi), W the weight: I alpha = W (exp(mu pi) - 1) R."""
+    answer = answer_of("scenes/band-brake")
+    weight = 2 * mpf("9.81")
+    gain = weight * (exp(mpf("0.3") * pi) - 1) * mpf("0.2") / mpf("0.1")
+    stop = 30 / gain
+    angles = [-30 * min(mpf(t), stop) + gain * min(mpf(t), stop) ** 2 / 2 for t in times(answer)]
+    agree(answer, {"drum.angle": angles})
+    (stopped,) = answer["events"]
+    assert (stopped["kind"], stopped["name"]) == ("stick", "band")
+    assert abs(stopped["time"] - stop) <= stopped["error"] + 2.0**-53

@@ -27,7 +27,7 @@ def string(connection: String, reader: Reader, name: str, path: Path) -> Definit
     sides: list[tuple[str, ...]] = []
     for i, entry in enumerate(connection.through):
         place, radius = reader.place(entry, (*path, "through", i)), reader.rim(entry)
-        slips = entry in connection.slips if isinstance(entry, str) else True
+        slips = not isinstance(entry, str) or entry in connection.slips or connection.friction is not None
         knots.append(StringPoint(place, radius, None if slips or not radius else place.body))
         given = connection.sides.get(entry, ()) if isinstance(entry, str) else ()
         sides.append((given,) if isinstance(given, str) else tuple(given))
@@ -52,12 +52,17 @@ def string(connection: String, reader: Reader, name: str, path: Path) -> Definit
     (run,) = runs
     ways = [part.direction(reader.start)[1] for part in run.parts]
     wrap = sum(float(np.arctan2(np.linalg.norm(u - w), np.linalg.norm(u + w))) * 2.0 for u, w in pairwise(ways))
+    drum = knots[1].place.body if knots[1].radius else None
+    if drum is not None:
+        # Around a drum it may wind by more than half a turn: in the sense in which the drum is on its side.
+        (u, w), sense = ways, -run.parts[0].senses[1]
+        wrap = float(np.arctan2(sense * (u[0] * w[1] - u[1] * w[0]), u @ w)) % (2.0 * np.pi)
     if connection.turns is not None:
         wrap += 2.0 * np.pi * reader.number(connection.turns, (*path, "turns"))
     rough = touch_of(reader, name, path, connection.restitution, connection.friction)
     shares = [2.0 * np.tanh(mu * wrap / 2.0) for mu in (rough.static, rough.kinetic)]
     touch = replace(touch, static=shares[0], kinetic=shares[1], friction=(f"{name}.friction",))
-    return RubbingString(name, bodies, (run,), touch)
+    return RubbingString(name, bodies, (run,), touch, drum)
 
 
 @definition_of.register

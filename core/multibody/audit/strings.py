@@ -55,20 +55,33 @@ class StringDefinition(Definition):
 
 @dataclass(frozen=True)
 class RubbingString(StringDefinition):
-    """A string over fixed pegs, on which it rubs: its tension is the mean of those at its ends.
+    """A string over fixed pegs, or a drum, on which it rubs: its tension is the mean of those at its ends.
 
     Its friction, by which the tension grows from the first end to the last, slips with half of the difference of the
-    rates of the parts at the ends; `touch` has the coefficients of that.
+    rates of the parts at the ends, less what a drum turns; `touch` has the coefficients of that.
+
+    Attributes
+    ----------
+    drum : str or None
+        On which it rubs.
     """
+
+    drum: str | None = None
 
     def works(self) -> bool:
         """See `Definition.works`."""
         return self.touch.static > 0.0
 
     def _passed(self, placement: Placement) -> Numbers:
-        """Return half of what the first part is longer than the last (m)."""
+        """Return half of what the first part is longer than the last, less what a drum has turned (m)."""
         (run,) = self.runs
-        return (run.parts[0].extent(placement) - run.parts[-1].extent(placement)) / 2.0
+        first, last = run.parts[0], run.parts[-1]
+        half = (first.extent(placement) - last.extent(placement)) / 2.0
+        if self.drum is None:
+            return half
+        turn = placement[self.drum].turn
+        assert turn is not None, "a drum that rubs has a turn"
+        return half - first.senses[1] * first.b.radius * turn
 
     def slips(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.slips`."""

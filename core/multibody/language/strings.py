@@ -18,8 +18,9 @@ class String(Connection):
 
     It is taut at the start unless it is longer than its way. `restitution` is that of the jerk when it becomes taut;
     where it is given, velocities may open or jerk the string at the start. Between its ends it may rub on pegs, points
-    of the ground, with `friction`: one coefficient or two, that of sticking first. Around them it winds by the angle
-    between its parts, and as many whole `turns` beside that. With a `drive` it is as long as that says by time (m).
+    of the ground, or on one drum, with `friction`: one coefficient or two, that of sticking first. Around them it winds
+    by the angle between its parts, and as many whole `turns` beside that. With a `drive` it is as long as that says by
+    time (m).
     """
 
     through: Sequence[Place]

@@ -53,8 +53,8 @@ class Phase:
         In place of the models, where infinitely many impacts are in the phase.
     tail : Accumulation or None
         Bounces at the end that are alike in the limit only, and so small that they are passed over.
-    settles : str
-        The measure that comes to rest at the end, after impacts that are not listed; empty where there are none.
+    settles : tuple of str
+        The measures that come to rest at the end, after impacts that are not listed.
     arguments : sequence of Argument
         What is zero where formulas change their piece.
     openings : mapping of int to int
@@ -70,7 +70,7 @@ class Phase:
     end: Ball | None = None
     bounces: Accumulation | None = None
     tail: Accumulation | None = None
-    settles: str = ""
+    settles: tuple[str, ...] = ()
     arguments: Sequence[Argument] = ()
     openings: Mapping[int, int] = field(default_factory=dict)
 

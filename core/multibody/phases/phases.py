@@ -96,7 +96,7 @@ class _Run:
         self.decided = Decided(self.states, list(self.unilateral))
         self.described, self.arguments = base, dict[Key, Argument]()
         self.turning: list[str] = []
-        self.bounced: dict[int, int] = {}
+        self.bounced: dict[tuple[int, ...], int] = {}
 
     def go(self) -> None:
         """Go through the phases until the end, or until mechanics does not decide."""
@@ -225,7 +225,7 @@ class _Run:
             return
         # The end of bounces that are summed up is known.
         ended = self.motion.phases[-1].settles
-        beyond = [i for i in self.touching if self.states[i] is State.OPEN and self.unilateral[i].name != ended]
+        beyond = [i for i in self.touching if self.states[i] is State.OPEN and self.unilateral[i].name not in ended]
         settling = may_strike(self.unilateral, beyond, self.motion.events, self.tracks)
         if not settling:
             return
@@ -240,7 +240,7 @@ class _Run:
         for i in settling:
             settled = self.unilateral[i]
             # The end of bounces that are not listed is an event already.
-            listed = settled.name == self.motion.phases[-1].settles
+            listed = settled.name in self.motion.phases[-1].settles
             if self.states[i] is State.OPEN and settled.restitution > 0 and not listed:
                 event = self._event("settle", settled.name)
                 self.motion.events[-1] = replace(event, error=event.error + left)
@@ -292,7 +292,7 @@ class _Run:
 
     def _record(self, hit: Sequence[int], outcome: Impact, q: Sequence[Ball], v: Sequence[Ball]) -> None:
         """Add the events of an impact from a state, each with the energy that its connection takes."""
-        self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
+        self.bounced = {tuple(hit): self.bounced.get(tuple(hit), 0) + 1}
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, balls = outcome.unilateral[i], outcome.components(i)
             impulses = {name: nearest(ball) for name, ball in balls.items()}
@@ -387,7 +387,7 @@ class _Run:
             kind = change_of(one, old, new)
             if self.motion.phases and old is State.OPEN and new is not State.OPEN:
                 # What closes without an approach that is known has had no impact.
-                met = {event.name for event in self.motion.events[known:]} | {self.motion.phases[-1].settles}
+                met = {event.name for event in self.motion.events[known:]} | {*self.motion.phases[-1].settles}
                 # Where one corner of a shape takes over from another, the shape has touched before.
                 pairs = zip(self.unilateral, self.states, strict=True)
                 touched = {other.whole for other, state in pairs if other.whole and state is not State.OPEN}
@@ -442,17 +442,17 @@ class _Run:
         phase.end = tracks.time
         # Where a facet ends, or a height above an edge beyond its ends, another is met, and not necessarily touched.
         facets = first.watch.one.facets
-        self._meet(phase, -1 if first.watch.what == "region" or facets else first.watch.number)
+        self._meet(phase, () if first.watch.what == "region" or facets else (first.watch.number,))
         return True
 
-    def _meet(self, phase: Phase, ending: int) -> None:
+    def _meet(self, phase: Phase, ending: Sequence[int]) -> None:
         """Find what touches at the end of a phase: what was closed, what ended it, and what is met there as well."""
         q, _ = self.tracks.wide()
         closed = [i for i, state in enumerate(phase.states) if state is not State.OPEN]
         met = []
         for i, one in enumerate(self.unilateral):
             gap = evaluated(one.gap, q)
-            if i not in closed and (i == ending or is_zero(gap) or bool(gap < 0)):
+            if i not in closed and (i in ending or is_zero(gap) or bool(gap < 0)):
                 met.append(i)
         self.touching = sorted({*closed, *met})
         # The other sides of guides touch all the time.
@@ -462,15 +462,16 @@ class _Run:
 
     def _accumulate(self, phase: Phase) -> bool:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
-        for i, count in self.bounced.items():
-            few = len(self.motion.events) >= MANY or rate_share(self.unilateral[i], self.tracks) < SMALL
+        for group, count in self.bounced.items():
+            few = len(self.motion.events) >= MANY or rate_share(self.unilateral[group[0]], self.tracks) < SMALL
             listed = count >= (LATER_LISTED if few else LISTED)
-            found = recurring(self.unilateral, i, phase, self.tracks, arb(self.end), listed=listed)
+            found = recurring(self.unilateral, group, phase, self.tracks, arb(self.end), listed=listed)
             if found is None or not all(
                 found.tail.keeps_sign(one.law, one.sign) for one in phase.arguments if one.sign
             ):
                 continue
-            phase.end, phase.settles = phase.start + found.tail.length, self.unilateral[i].name
+            phase.end = phase.start + found.tail.length
+            phase.settles = tuple(self.unilateral[i].name for i in group)
             if found.exact:
                 phase.bounces = found.tail
             else:
@@ -478,8 +479,9 @@ class _Run:
             self.tracks.each = found.ends
             if not (self.tracks.exact and found.exact):
                 self.tracks.part(phase.still)
-            self._event("settle", self.unilateral[i].name)
-            self._meet(phase, i)
+            for name in phase.settles:
+                self._event("settle", name)
+            self._meet(phase, group)
             self.bounced = {}
             return True
         return False

@@ -1,11 +1,13 @@
 """Whether the bounces that follow an impact are all alike, so that they may be summed up (`Accumulation`).
 
-They are if the acceleration between them is constant, if the same impulse follows every arc with the same ratio of
-friction, if whatever else is closed stays so under every impulse, and if nothing else is met until they end.
+They are if the acceleration between them is constant, if the same impulses follow every arc with the same ratios of
+friction, if whatever else is closed stays so under every impulse, and if nothing else is met until they end. Several
+measures bounce as one where they strike at one time and with one coefficient of restitution, as both corners of a block
+that falls flat: the rates of their gaps are then all multiplied by -e, and the next strike is common as well.
 
-Where accelerations change, bounces are alike in the limit only. They are summed up twice, with the accelerations and
-rows of the first arc and with those of the place where that sum ends: the difference is the error of either, and when
-it is small enough the rest is passed over.
+Where accelerations change, bounces are alike in the limit only. They are summed up three times, with the accelerations
+and rows of the start, of the middle of the first arc and of the place where the first sum ends: the largest difference
+is the error, and when it is small enough the rest is passed over.
 """
 
 from __future__ import annotations
@@ -13,10 +15,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from flint import arb
+from flint import arb, arb_mat
 
-from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero, size
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import (
+    Forces,
     Responses,
     across_rate,
     gap_rate,
@@ -48,7 +51,7 @@ SMALL = 2.0**-20
 
 @dataclass(frozen=True)
 class Recurring:
-    """Bounces of one measure that are alike until they end.
+    """Bounces of measures that strike together, alike until they end.
 
     Attributes
     ----------
@@ -66,12 +69,14 @@ class Recurring:
 
 
 def recurring(
-    unilateral: Sequence[Unilateral], i: int, phase: Phase, tracks: Tracks, end: Ball, *, listed: bool
+    unilateral: Sequence[Unilateral], group: Sequence[int], phase: Phase, tracks: Tracks, end: Ball, *, listed: bool
 ) -> Recurring | None:
-    """Return the bounces of a measure that follow the start of a phase, None where they do not end as they are.
+    """Return the bounces of measures that follow the start of a phase, None where they do not end as they are.
 
     Parameters
     ----------
+    group : sequence of int
+        The measures, which have struck together.
     tracks : Tracks
         The sizes by which errors are measured.
     end : ball
@@ -79,29 +84,33 @@ def recurring(
     listed : bool
         Whether enough bounces are listed, so that those that follow may be summed up.
     """
-    one = unilateral[i]
-    if not listed or phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
+    if not listed:
         return None
-    if one.slip is not None and one.law != "newton":
+    every = [unilateral[i] for i in group]
+    if not all(phase.states[i] is State.OPEN and 0 < one.restitution < 1 for i, one in zip(group, every, strict=True)):
+        return None
+    if not all(is_zero(one.restitution - every[0].restitution) for one in every):
+        return None
+    if any(one.law != "newton" and (one.slip is not None or len(group) > 1) for one in every):
         # The slip that is followed through an impulse changes its rebound from one bounce to the next.
         return None
-    exact = phase.models[0].whole.uniform and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
+    exact = phase.models[0].whole.uniform and all(one.gap and all(len(key) < 2 for key in one.gap) for one in every)
     found: list[Accumulation] = []
     known = tracks.wide()[0]
     for k in range(len(phase.tracks)):
         gain = list(phase.models[k].whole.acceleration)
-        tail = _tail(unilateral, i, phase, k, phase.tables[k].table, gain, known)
+        tail = _tail(unilateral, group, phase, k, phase.tables[k].table, gain, known)
         if tail is None or phase.start + tail.length > end:
             return None
         found.append(tail)
     if exact:
         ends = [_ended(track, tail) for track, tail in zip(phase.tracks, found, strict=True)]
     else:
-        limits = _limits(unilateral, i, phase, found, tracks)
+        limits = _limits(unilateral, group, phase, found, tracks)
         if limits is None:
             return None
         ends = limits
-    if not _alone(unilateral, i, phase, found, ends):
+    if not _alone(unilateral, group, phase, found, ends):
         return None
     return Recurring(found[0], exact, ends)
 
@@ -111,42 +120,47 @@ def _ended(track: Track, tail: Accumulation) -> Track:
 
 
 def _limits(
-    unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequence[Accumulation], tracks: Tracks
+    unilateral: Sequence[Unilateral], group: Sequence[int], phase: Phase, tails: Sequence[Accumulation], tracks: Tracks
 ) -> list[Track] | None:
-    """Return the end of bounces that are alike in the limit only, as the two sums have it; None where these differ.
+    """Return the end of bounces that are alike in the limit only, as two sums have it; None where sums differ.
 
-    The first track has the sum by what holds where the bounces begin, the last by what holds where they end; both are
-    put onto the rows, for what is closed is held all the while.
+    The first track has the sum by what holds where the bounces begin, the last that which differs most, by what holds
+    in the middle of the first of them or at the end. Both are put onto the rows: what is closed is held all the while.
     """
     ends = [_ended(track, tail) for track, tail in zip(phase.tracks, tails, strict=True)]
     k, around = len(tails) - 1, tracks.wide()[0]
-    table = replace(phase.tables[k].table, q=ends[k].q, v=ends[k].v)
-    known = [arb(x.mid(), float(y.rad())) for x, y in zip(ends[k].q, around, strict=True)]
-    later = _tail(unilateral, i, phase, k, table, accelerations(table)[0], known)
-    if later is None:
-        return None
-    other = _ended(phase.tracks[k], later)
-    change = zip(other.v, ends[k].v, tracks.scales()[1], strict=True)
-    if any(abs(float((x - y).mid())) > ALIKE * scale for x, y, scale in change):
-        return None
-    # What comes to rest has the same rates by both sums, and not at the same time.
-    late = abs(float((other.time - ends[k].time) * later.closing))
-    if late > ALIKE * tracks.fastest("rad" if unilateral[i].unit == "N m" else "m"):
-        return None
-    each = ((ends[0], phase.tables[0].table), (other, table))
+    others: list[tuple[Ball, Track, Table]] = []
+    # Forces by the place are at the end what they were at the start, and another in between.
+    for q, v in (tails[k].state(tails[k].first / 2, ONE), tails[k].limit()):
+        table = replace(phase.tables[k].table, q=q, v=v)
+        known = [arb(x.mid(), float(y.rad())) for x, y in zip(q, around, strict=True)]
+        later = _tail(unilateral, group, phase, k, table, accelerations(table)[0], known)
+        if later is None:
+            return None
+        other = _ended(phase.tracks[k], later)
+        change = zip(other.v, ends[k].v, tracks.scales()[1], strict=True)
+        if any(abs(float((x - y).mid())) > ALIKE * scale for x, y, scale in change):
+            return None
+        # What comes to rest has the same rates by all sums, and not at the same time.
+        late = abs((other.time - ends[k].time) * later.closing)
+        if float(late) > ALIKE * tracks.fastest("rad" if unilateral[group[0]].unit == "N m" else "m"):
+            return None
+        others.append((late, other, table))
+    _, other, table = max(others, key=lambda one: float(one[0]))
+    each = ((ends[0], phase.tables[0].table), (other, replace(table, q=other.q, v=other.v)))
     return [Track(end.time, *projected(rows, end.q, end.v, around)) for end, rows in each]
 
 
 def _tail(
     unilateral: Sequence[Unilateral],
-    i: int,
+    group: Sequence[int],
     phase: Phase,
     k: int,
     table: Table,
     acceleration: Sequence[Ball],
     known: Sequence[Ball],
 ) -> Accumulation | None:
-    """Return the bounces of a measure that follow the start of a track of a phase, None where they are not alike.
+    """Return the bounces of measures that follow the start of a track of a phase, None where they are not alike.
 
     Parameters
     ----------
@@ -158,29 +172,75 @@ def _tail(
         That place, as far as it is known.
     """
     track = phase.tracks[k]
-    one = along_slip(unilateral, [i], track.q, track.v)[i]
-    opening = gap_rate(one, track.q, track.v)
-    closing = -acceleration_along(table, Row.held(one.name, one.gap), acceleration)
-    if not opening > 0 or not closing > 0:
+    turned = along_slip(unilateral, group, track.q, track.v)
+    every = [turned[i] for i in group]
+    openings = [gap_rate(one, track.q, track.v) for one in every]
+    closings = [-acceleration_along(table, Row.held(one.name, one.gap), acceleration) for one in every]
+    if not all(x > 0 for x in (*openings, *closings)) or not _together(openings, closings):
         return None
-    found = responses(table, [one], [0])
-    ratio: Ball | None = ZERO
-    if one.slip is not None:
-        gain = acceleration_along(table, Row(one.name, None, one.slip), acceleration)
-        ratio = _ratio(one, found, opening, closing, gain, slip_rate(one, track.q, track.v))
+    found = responses(table, every, range(len(every)))
+    slips = [slip_rate(one, track.q, track.v) for one in every]
+    gains = [acceleration_along(table, Row(one.name, None, one.slip or {}), acceleration) for one in every]
+    ratios: list[Ball | None] = [_sliding(one, slip) for one, slip in zip(every, slips, strict=True)]
+    if len(every) == 1 and every[0].slip is not None:
+        ratios = [_ratio(every[0], found, openings[0], closings[0], gains[0], slips[0])]
+    for n, one in enumerate(every):
+        if one.across is not None and not _straight(one, n, found, table, track.q, track.v, acceleration):
+            return None
+    impulses = _impulses(found, openings, ratios)
+    # Of a level bar on two points one takes nothing of an impulse on the other: a share of rounding is none.
+    as_known = responses(replace(table, q=list(known)), every, range(len(every)))
+    if impulses is None or not _pressed(unilateral, phase, k, as_known, impulses):
+        return None
+    columns = [[p * x for x in found.columns[line]] for line, p in impulses.items()]
+    push = [sum(parts, ZERO) for parts in zip(*columns, strict=True)]
+    restitution = every[0].restitution
+    tail = Accumulation(track.q, track.v, acceleration, push, ONE, openings[0], closings[0], restitution)
+    if len(every) > 1 and not all(_slides_on(tail, *each) for each in zip(every, gains, slips, strict=True)):
+        return None
+    return tail
+
+
+def _together(openings: Sequence[Ball], closings: Sequence[Ball]) -> bool:
+    """Return whether gaps that open at some rates, and fall at others, close at one time."""
+    w, fall = openings[0], closings[0]
+    apart = (x * fall - w * y for x, y in zip(openings, closings, strict=True))
+    return all(is_zero(x) or abs(float(x.mid())) <= ALIKE * float(w * fall) for x in apart)
+
+
+def _sliding(one: Unilateral, slip: Ball) -> Ball:
+    """Return the ratio of friction to push of what slides."""
+    if is_zero(slip):
+        return ZERO
+    return -one.kinetic if slip > 0 else one.kinetic
+
+
+def _impulses(found: Responses, openings: Sequence[Ball], ratios: Sequence[Ball | None]) -> Forces | None:
+    """Return impulses by their lines that raise the rate of the first gap by one, and those of all in proportion.
+
+    None where there are none, or where one of them would pull.
+    """
+    pushes: list[Forces] = []
+    for n, ratio in enumerate(ratios):
         if ratio is None:
             return None
-    if one.across is not None and not _straight(one, found, table, track.q, track.v, acceleration):
+        pushes.append({found.normal[n]: ONE} if ratio == 0 else {found.normal[n]: ONE, found.slips[n]: ratio})
+    matrix = found.among(pushes, [found.normal[n] for n in range(len(pushes))])
+    try:
+        solved = arb_mat(matrix).solve(arb_mat([[x / openings[0]] for x in openings])).entries()
+    except ZeroDivisionError:
         return None
-    push, yields = list(found.columns[0]), found.matrix[0][0]
-    if one.slip is not None:
-        push = [x + ratio * y for x, y in zip(push, found.columns[1], strict=True)]
-        yields = yields + ratio * found.matrix[0][1]
-    # Of a level bar on two points one takes nothing of an impulse on the other: a share of rounding is none.
-    as_known = responses(replace(table, q=list(known)), [one], [0])
-    if not yields > 0 or not _pressed(unilateral, phase, k, as_known, ratio):
+    if not all(x > 0 for x in solved):
         return None
-    return Accumulation(track.q, track.v, acceleration, push, yields, opening, closing, one.restitution)
+    return {line: p * x for p, push in zip(solved, pushes, strict=True) for line, x in push.items()}
+
+
+def _slides_on(tail: Accumulation, one: Unilateral, gain: Ball, slip: Ball) -> bool:
+    """Return whether a contact among several slides on through all bounces, or does not slide at all."""
+    kick = rate_along(Row(one.name, None, one.slip or {}).line(tail.q), tail.push)
+    if is_zero(slip):
+        return is_zero(gain) and is_zero(kick)
+    return bool(abs(slip) > abs(gain) * tail.length + abs(kick) * tail.total)
 
 
 def acceleration_along(table: Table, row: Row, acceleration: Sequence[Ball]) -> Ball:
@@ -189,11 +249,13 @@ def acceleration_along(table: Table, row: Row, acceleration: Sequence[Ball]) -> 
 
 
 def _straight(
-    one: Unilateral, found: Responses, table: Table, q: list[Ball], v: list[Ball], acceleration: Sequence[Ball]
+    one: Unilateral, n: int, found: Responses, table: Table, q: list[Ball], v: list[Ball], acceleration: Sequence[Ball]
 ) -> bool:
     """Return whether the slip of bounces in space stays along one direction."""
     gain = acceleration_along(table, Row(one.name, None, one.across or {}), acceleration)
-    beside = (across_rate(one, q, v), gain, found.matrix[2][0], found.matrix[2][1])
+    pushed = found.matrix[found.across[n]]
+    along = [pushed[line] for lines in (found.normal, found.slips) for line in lines.values()]
+    beside = (across_rate(one, q, v), gain, *along)
     return all(is_zero(x) for x in beside)
 
 
@@ -223,12 +285,12 @@ def _ratio(one: Unilateral, found: Responses, opening: Ball, closing: Ball, gain
     return ratio if abs(slip) > abs(gain) * length + abs((tn + ratio * tt) * total) else None
 
 
-def _pressed(unilateral: Sequence[Unilateral], phase: Phase, k: int, found: Responses, ratio: Ball) -> bool:
+def _pressed(unilateral: Sequence[Unilateral], phase: Phase, k: int, found: Responses, impulses: Forces) -> bool:
     """Return whether what is closed takes its share of every impulse as it is: it is pressed, and sticks."""
-    reactions = dict(found.reactions[0])
-    if ratio != 0:
-        for r, x in found.reactions[1].items():
-            reactions[r] = reactions[r] + ratio * x
+    reactions: dict[int, Ball] = {}
+    for line, p in impulses.items():
+        for r, x in found.reactions[line].items():
+            reactions[r] = p * x + reactions.get(r, ZERO)
     # The row's multiplier answers an acceleration; an impulse is answered alike.
     for j, (one, row) in enumerate(zip(unilateral, phase.tables[k].normal, strict=True)):
         push: Ball = ZERO if row is None else reactions.get(row, ZERO)
@@ -241,7 +303,11 @@ def _pressed(unilateral: Sequence[Unilateral], phase: Phase, k: int, found: Resp
 
 
 def _alone(
-    unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequence[Accumulation], ends: Sequence[Track]
+    unilateral: Sequence[Unilateral],
+    group: Sequence[int],
+    phase: Phase,
+    tails: Sequence[Accumulation],
+    ends: Sequence[Track],
 ) -> bool:
     """Return whether nothing else can happen until the bounces end: all else is too far away, or slips too fast.
 
@@ -255,7 +321,7 @@ def _alone(
     for j, (one, state) in enumerate(zip(unilateral, phase.states, strict=True)):
         if not all(evaluated(bound, around) > 0 for bound in one.region):
             return False
-        if j == i:
+        if j in group:
             continue
         if state is State.OPEN and one.opposite is None:
             away = evaluated(one.gap, around) > 0

@@ -122,12 +122,14 @@ class Sums:
                     self._rub(found, unknown, i, one, number, piece)
                 self._put(found[f"{one.name}.{IMPACTS}"], *_nothing(*self._local(number, piece)))
             if piece.phase.settles:
-                if unknown:
-                    unknown.add(f"{piece.phase.settles}.{IMPACTS}")
+                settling = [f"{one}.{IMPACTS}" for one in piece.phase.settles]
+                # How measures that come to rest together share what they take is not known.
+                if unknown or len(settling) > 1:
+                    unknown.update(settling)
                 if piece.arc is not None:
                     self._bounce(found, number, piece)
                 elif number + 1 < len(self.pieces):
-                    self._come_to_rest(found[f"{piece.phase.settles}.{IMPACTS}"], piece, self.pieces[number + 1])
+                    self._come_to_rest(found[settling[0]], piece, self.pieces[number + 1])
         return {name: self._column(one, "J") for name, one in found.items() if name not in unknown}
 
     def _sum(self) -> _Sum:
@@ -237,7 +239,7 @@ class Sums:
     def _bounce(self, found: dict[str, _Sum], number: int, piece: Stretch) -> None:
         """Give the impacts that are not listed what all else leaves over of the change of kinetic energy."""
         mine, times = self._local(number, piece)
-        settling = f"{piece.phase.settles}.{IMPACTS}"
+        settling = f"{piece.phase.settles[0]}.{IMPACTS}"
         kinetic = piece.columns(times, self.how, "energy-in-time")["energy.kinetic"]
         others = [one for name, one in found.items() if name != settling]
         values = kinetic.values - energy_of(self.motion.base).kinetic

@@ -1,9 +1,10 @@
-"""Friction of a string on fixed pegs: between sticking tensions the ratio exp(mu theta), the law of the capstan.
+"""Friction of a string on fixed pegs or a drum: between sticking tensions the ratio exp(mu theta), as on a capstan.
 
 With the tensions T_1 and T_2 at the ends, their mean N is the multiplier of what the string lacks to be taut, and their
 difference F = T_2 - T_1 that of the slip s' = (l_1' - l_2')/2. T_2 <= T_1 exp(mu theta) and its reverse are then
 |F| <= 2 tanh(mu theta/2) N: Coulomb's law with another coefficient. The angle theta around all pegs together is a
-number as long as the parts at the ends keep their directions.
+number as long as the parts at the ends keep their directions. On a drum, on which the string winds in the sense k, the
+slip is s' - k R omega, and F turns the drum by k R F.
 
 References
 ----------
@@ -31,13 +32,14 @@ from core.multibody.algebra.polynomials import (
     difference,
     dot,
     evaluated,
+    is_zero,
 )
 from core.multibody.language.strings import String
 from core.multibody.table.connection_effects import Kept, Limit
 from core.multibody.table.contact_geometry import coefficients_of_friction
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of
-from core.multibody.table.string_measures import Knot, at_most, require_long_enough, written_length
+from core.multibody.table.string_measures import Knot, at_most, course, require_long_enough, written_length
 
 MOST_TURNS = 10**9
 """Beside the angle between a string's parts; a decimal with an exponent of hundreds is none that anybody counts."""
@@ -51,12 +53,25 @@ def string_on_pegs(measures: Measures, name: str, connection: String, knots: Seq
     InvalidParameter
         Unless it runs from a body over points of the ground to a body; for coefficients and turns that cannot be.
     """
-    _require_pegs(knots, path)
+    _require_pegs(connection, knots, path)
     static, kinetic = coefficients_of_friction(measures, connection.friction, (*path, "friction"))
     q, points = measures.table.q, [knot.point for knot in knots]
     ways = [[difference(y, x) for x, y in zip(a.at, b.at, strict=True)] for a, b in pairwise(points)]
-    directions = [unit([evaluated(x, q) for x in way], knot.at) for way, knot in zip(ways, knots[1:], strict=True)]
-    angle = sum((_between(u, w) for u, w in pairwise(directions)), _turns(measures, connection, path))
+    starts = [[evaluated(x, q) for x in way] for way in ways]
+    drum, turning = knots[1], {}
+    if drum.radius is not None and drum.turn is not None:
+        _, sense, _, u = course(knots[0], drum, starts[0], path)
+        after, _, _, w = course(drum, knots[2], starts[1], path)
+        if sense != after:
+            raise InvalidParameter(
+                (*path, "sides", drum.name), "be sides between which the string winds around the drum in one sense"
+            )
+        directions: list[Sequence[Ball]] = [u, w]
+        angle = _around(u, w, -sense) + _turns(measures, connection, path)
+        turning = combined((-sense * drum.radius, drum.turn))
+    else:
+        directions = [unit(way, knot.at) for way, knot in zip(starts, knots[1:], strict=True)]
+        angle = sum((_between(u, w) for u, w in pairwise(directions)), _turns(measures, connection, path))
     for k in (0, -1):
         measures.kept.extend(_keeps_its_direction(ways[k], directions[k], path))
     parts = [dot(list(map(constant, u)), way) for u, way in zip(directions, ways, strict=True)]
@@ -68,24 +83,42 @@ def string_on_pegs(measures: Measures, name: str, connection: String, knots: Seq
         held = written_length(measures, connection.length, path)
         require_long_enough(measures, evaluated(way, q), held, path)
     taut = at_most(measures, name, combined((ONE, way), (-held, constant(ONE))), connection, path)
-    slip = rate_of(combined((ONE / 2, parts[0]), (-ONE / 2, parts[-1])))
+    slip = rate_of(combined((ONE / 2, parts[0]), (-ONE / 2, parts[-1]), (ONE, turning)))
     shares = [2 * (mu * angle / 2).tanh() for mu in (static, kinetic)]
     measures.unilateral.append(replace(taut, slip=slip, static=shares[0], kinetic=shares[1]))
 
 
-def _require_pegs(knots: Sequence[Knot], path: Path) -> None:
-    for knot in knots[1:-1]:
-        if knot.point.body is not None:
+def _require_pegs(connection: String, knots: Sequence[Knot], path: Path) -> None:
+    ends, inner = (knots[0], knots[-1]), knots[1:-1]
+    drums = [knot for knot in inner if knot.radius is not None]
+    for knot in inner:
+        if knot.point.body is not None and knot.radius is None:
             raise InvalidParameter(
                 knot.at,
-                "be a point of the ground: a string with friction rubs on fixed pegs",
-                remedy="leave out the friction; a drum without slip divides a string by itself",
+                "be a point of the ground, or a drum: a string with friction rubs on fixed pegs or on a drum",
+                remedy="leave out the friction",
             )
-    ends = (knots[0], knots[-1])
-    if len(knots) < 3 or any(knot.point.body is None or knot.radius is not None for knot in ends):
+    if connection.slips:
+        raise InvalidParameter((*path, "slips"), "be left out of a string with friction")
+    if drums and len(inner) > 1:
+        raise InvalidParameter((*path, "through"), "pass one drum alone, or pegs, for a string with friction")
+    # A belt may end at the ground, as that of a brake does: then its drum moves beside it.
+    fixed = [knot for knot in ends if knot.point.body is None]
+    if not inner or any(knot.radius is not None for knot in ends) or len(fixed) > len(drums):
         raise InvalidParameter(
-            (*path, "through"), "be a place of a body, pegs, and a place of a body, for a string with friction"
+            (*path, "through"),
+            "be a place of a body, pegs or a drum, and a place of a body, for a string with friction",
+            remedy="one end may be a point of the ground where it passes a drum",
         )
+
+
+def _around(u: Sequence[Ball], w: Sequence[Ball], sense: int) -> Ball:
+    """Return the angle from one direction to another in a sense of turning, 1 counter-clockwise (rad, 0 to 2 pi)."""
+    crossed = sense * (u[0] * w[1] - u[1] * w[0])
+    if is_zero(crossed):
+        return ZERO if scalar_product(u, w) > 0 else arb.pi()
+    angle = arb.atan2(crossed, scalar_product(u, w))
+    return angle if angle > 0 else angle + 2 * arb.pi()
 
 
 def _keeps_its_direction(way: Sequence[Poly], direction: Sequence[Ball], path: Path) -> Iterator[Kept]:

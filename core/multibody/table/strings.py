@@ -8,7 +8,7 @@ u.(v_b - v_a) + k_a R_a omega_a - k_b R_b omega_b. A drum without slip divides a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise, product
+from itertools import pairwise
 
 from core.balls import raised
 from core.errors import InvalidParameter, Path, SlackAtStart
@@ -33,11 +33,8 @@ from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.rows import add_rows
 from core.multibody.table.rubbing_strings import string_on_pegs
-from core.multibody.table.string_measures import Knot, at_most, require_long_enough, written_length
+from core.multibody.table.string_measures import SIDES, Knot, at_most, course, require_long_enough, written_length
 from core.multibody.table.table import Row
-
-SIDES: Mapping[str, tuple[int, int]] = {"left": (0, -1), "right": (0, 1), "below": (1, -1), "above": (1, 1)}
-"""A side of a drum: which component of the way from its centre to the tangent point, and the sign it has."""
 
 MOST_THROUGH = 50
 """Places that a string passes: coordinates and rows grow with them."""
@@ -247,24 +244,7 @@ def _tangent(measures: Measures, name: str, a: Knot, b: Knot, path: Path) -> lis
     """Add direction and rows of a part that touches a drum; return what its length changes by."""
     table = measures.table
     d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
-    start = [evaluated(x, table.q) for x in d]
-    square = start[0] * start[0] + start[1] * start[1]
-    found = []
-    for ka, kb in product((1, -1) if a.radius is not None else (0,), (1, -1) if b.radius is not None else (0,)):
-        offset = (ka * a.radius if ka else ZERO) - (kb * b.radius if kb else ZERO)
-        rest = square - offset * offset
-        if not rest > 0:
-            continue
-        span = rest.sqrt()
-        u = ((span * start[0] + offset * start[1]) / square, (span * start[1] - offset * start[0]) / square)
-        if all(_touches(knot, which, k, u) for knot, which, k in ((a, -1, ka), (b, 0, kb)) if k):
-            found.append((ka, kb, offset, u))
-    if len(found) != 1:
-        culprit = a if a.radius is not None else b
-        raise InvalidParameter(
-            (*path, "sides", culprit.name), "be sides on which the string can touch, and which decide its course"
-        )
-    ka, kb, offset, u = found[0]
+    ka, kb, offset, u = course(a, b, [evaluated(x, table.q) for x in d], path)
     if ka:
         a.senses.append(ka)
     if kb:
@@ -286,14 +266,6 @@ def _tangent(measures: Measures, name: str, a: Knot, b: Knot, path: Path) -> lis
     if kb and b.turn is not None:
         parts.append((constant(-kb * b.radius), rate_of(b.turn)))
     return parts
-
-
-def _touches(knot: Knot, which: int, sense: int, u: tuple[Ball, Ball]) -> bool:
-    side = knot.sides[which]
-    assert side is not None
-    component, sign = SIDES[side]
-    way = (-u[1], u[0])[component] * sense * sign
-    return bool(way > 0)
 
 
 def _times(key: tuple[int, ...], index: int) -> Poly:

@@ -19,16 +19,19 @@ CONSERVED = {
     name: count
     for count, names in {
         0: """
-            backspin-returns ball-in-bowl block-on-plank block-on-plank-in-space block-on-spring-with-friction
+            backspin-returns ball-in-bowl band-brake bead-on-rough-ring block-on-plank
+            block-on-plank-in-space block-on-spring-with-friction
             block-up-rough-incline blocks-pulled centrifugal-governor coin-rolls-round coupled-pendulums
-            crank-slider damped-oscillator disc-slips-down-incline driven-duffing-oscillator fall-with-drag
+            crank-slider damped-oscillator disc-slips-down-incline drawer-pulled-aside
+            driven-duffing-oscillator fall-with-drag
             four-bar-linkage four-legged-table kapitza-pendulum lagrange-points plank-on-two-strings
             rattleback rod-in-cylinder rod-on-edge rope-on-bollard sleeping-top slip-to-roll
             sphere-on-turntable stone-across-slope three-body-figure-eight
         """,
         1: """
             atwood-machine atwood-machine-with-spring ball-in-cylinder ball-on-ball-dropped bead-on-hoop
-            bead-on-parabola bead-on-rotating-rod block-and-tackle block-tips-over blocks-on-incline
+            bead-on-parabola bead-on-rotating-rod block-and-tackle block-tips-over rocking-block
+            blocks-on-incline
             bounce-to-rest chain-off-table chain-over-peg cradle-of-two cylinder-in-cylinder
             cylinder-on-incline disc-leaves-cylinder double-atwood-machine double-pendulum
             double-pendulum-of-points dumbbell-dropped dumbbell-dropped-in-space elastic-pendulum
@@ -60,7 +63,8 @@ CLOSED = {
     for count, names in {
         0: """
             alpha-particle asymmetric-top atwood-machine-with-spring ball-in-bowl ball-in-cylinder
-            bead-on-hoop bead-on-parabola block-tips-over centrifugal-governor coin-rolls-round
+            bead-on-hoop bead-on-parabola bead-on-rough-ring block-tips-over drawer-pulled-aside
+            rocking-block centrifugal-governor coin-rolls-round
             conical-pendulum coupled-pendulums cradle-of-two crank-slider cylinder-in-cylinder
             cylinder-on-cylinder disc-leaves-cylinder double-pendulum double-pendulum-of-points
             driven-duffing-oscillator elastic-pendulum fall-with-drag foucault-pendulum four-bar-linkage
@@ -79,7 +83,8 @@ CLOSED = {
             spool spool-rolls-away spool-winds-up weight-lands yo-yo
         """,
         2: """
-            binary-stars block-on-spring-with-friction block-up-rough-incline cylinder-on-movable-wedge
+            band-brake binary-stars block-on-spring-with-friction block-up-rough-incline
+            cylinder-on-movable-wedge
             double-atwood-machine harmonic-ellipse movable-wedge rope-on-bollard sphere-on-incline
             spinning-disc-bounces two-masses-two-springs
         """,

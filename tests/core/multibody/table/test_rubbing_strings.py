@@ -234,3 +234,115 @@ def test_faults_name_their_field(changes: dict[str, Any], path: tuple[str, ...])
     with pytest.raises(InvalidParameter) as caught:
         solve_scene(read(over(**{"through": OVER_TWO_PEGS, "friction": 0.2, "turns": 1, **changes})), [1.0])
     assert caught.value.path == ("connections", 0, *path)
+
+
+def over_a_drum(inertia: Any, friction: Any, spin: float = 0, speed: float = 0, heavy: float = 3) -> dict[str, Any]:
+    """Return masses of 1 kg and more that hang from a string over a drum, on which it rubs."""
+    return {
+        "gravity": [0, -G],
+        "bodies": {
+            "light": {"mass": 1, "at": [-0.1, -1], "velocity": [0, speed]},
+            "heavy": {"mass": heavy, "at": [0.1, -1]},
+            "drum": {"mass": 2, "radius": 0.1, "inertia": inertia, "at": [0, 0], "angular_velocity": spin},
+        },
+        "connections": [
+            {"kind": "pin", "name": "axle", "a": "drum", "b": [0, 0]},
+            {
+                "kind": "string",
+                "name": "s",
+                "through": ["light", "drum", "heavy"],
+                "sides": {"drum": ["left", "right"]},
+                "friction": friction,
+            },
+        ],
+    }
+
+
+def test_a_string_slips_on_a_heavy_drum_by_the_ratio_of_the_capstan() -> None:
+    answer = solve_scene(read(over_a_drum(1, 0.1)), [0.4])
+    k = math.exp(0.1 * math.pi)
+    gain = G * (3 - k) / (3 + k)
+    assert answer.accelerations is not None
+    assert answer.accelerations["heavy"].linear[1] == pytest.approx(-gain, rel=1e-14)
+    # The difference of the tensions turns the drum.
+    turned = 0.1 * (3 * (G - gain) - (G + gain))
+    assert answer.accelerations["drum"].angular == pytest.approx(-turned, rel=1e-13)
+    assert force(answer, "s.2.tension") / force(answer, "s.1.tension") == pytest.approx(k, rel=1e-14)
+
+
+def test_a_string_sticks_on_a_light_drum_as_on_one_without_slip() -> None:
+    rough, plain = over_a_drum(0.001, 0.3), over_a_drum(0.001, 0.3)
+    del plain["connections"][1]["friction"]
+    rubbing, wound = (solve_scene(read(scene), [0.4]) for scene in (rough, plain))
+    assert rubbing.accelerations is not None
+    assert wound.accelerations is not None
+    assert rubbing.accelerations["heavy"].linear == pytest.approx(wound.accelerations["heavy"].linear, rel=1e-14)
+    assert force(rubbing, "s.2.tension") == pytest.approx(force(wound, "s.2.tension"), rel=1e-14)
+
+
+@pytest.mark.parametrize(("spin", "torque"), [(-30, 1.0), (30, -1.0)])
+def test_a_band_brake_has_the_torque_of_its_tensions(spin: float, torque: float) -> None:
+    """W (exp(mu pi) - 1) R where the drum draws at the fixed end, W (1 - exp(-mu pi)) R where at the weight."""
+    scene = over_a_drum(0.1, 0.3, spin)
+    del scene["bodies"]["light"]
+    scene["connections"][1]["through"] = [[-0.1, -1], "drum", "heavy"]
+    answer = solve_scene(read(scene), [0.2])
+    assert answer.accelerations is not None
+    expected = 3 * G * torque * (math.exp(torque * 0.3 * math.pi) - 1) * torque * 0.1 / 0.1
+    assert answer.accelerations["drum"].angular == pytest.approx(torque * abs(expected), rel=1e-13)
+    assert answer.accelerations["heavy"].linear[1] == pytest.approx(0, abs=1e-13)
+
+
+def test_a_belt_may_wind_by_more_than_half_a_turn() -> None:
+    """From above over the left to the right: three quarters of a turn between a fixed end and a pull of 20 N."""
+    drum = {"mass": 2, "radius": 0.2, "inertia": 0.1, "at": [0, 0], "angular_velocity": 10}
+    scene = {
+        "bodies": {"drum": drum, "end": {"mass": 1, "at": [0.2, 1]}},
+        "connections": [
+            {"kind": "pin", "a": "drum", "b": [0, 0]},
+            {"kind": "track", "place": "end", "on": {"at": [0.2, 0], "slope": {"degrees": 90}}},
+            {
+                "kind": "string",
+                "name": "s",
+                "through": [[1, 0.2], "drum", "end"],
+                "sides": {"drum": ["above", "right"]},
+                "friction": 0.2,
+            },
+            {"kind": "force", "place": "end", "force": [0, 20]},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.1])
+    ratio = force(answer, "s.1.tension") / force(answer, "s.2.tension")
+    assert ratio == pytest.approx(math.exp(0.2 * 1.5 * math.pi), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        over_a_drum(1, 0.1),
+        over_a_drum(0.001, 0.3),
+        over_a_drum(0.05, 0.2, spin=-60),
+        over_a_drum(0.05, [0.3, 0.2], spin=60, speed=1),
+        over_a_drum(0.05, [0.3, 0.2], spin=-10, speed=1, heavy=1),
+    ],
+)
+def test_a_string_on_a_drum_moves_as_the_plain_engine_says(scene: dict[str, Any]) -> None:
+    verdict = compared(scene, [0.0, 0.2, 0.4])
+    assert not verdict.not_supported
+    assert not verdict.differences
+    assert verdict.compared > 0
+
+
+@pytest.mark.parametrize(
+    ("through", "sides"),
+    [
+        (["light", "drum", [0, 5], "heavy"], ["left", "right"]),
+        (["light", "drum", "heavy"], ["left", "left"]),
+        ([[-0.1, -1], "drum", [0.1, -1]], ["left", "right"]),
+    ],
+)
+def test_a_string_rubs_on_one_drum_between_ends_that_move(through: list[Any], sides: list[str]) -> None:
+    scene = over_a_drum(1, 0.1)
+    scene["connections"][1] |= {"through": through, "sides": {"drum": sides}}
+    with pytest.raises(InvalidParameter):
+        solve_scene(read(scene), [0.1])
