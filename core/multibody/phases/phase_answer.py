@@ -57,10 +57,11 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
         system.require_answerable(request.times, request.accuracy)
     trajectory = request.solved(system)
     occurrences, extremes = (None, None) if trajectory is None else system.searched(request.times, request.accuracy)
-    model, accelerations, forces = _start_of(motion, float(request.times.max(initial=0.0)))
+    last = float(request.times.max(initial=0.0))
+    model, accelerations, forces = _start_of(motion, last)
     outputs = request.outputs
     periods = [part.period for part in model.apart if part.period is not None]
-    if periods and ends_within(motion.phases[0], max(periods)):
+    if periods and ends_within(motion, max(periods), last):
         # What would repeat comes to an end, or its strings to another phase, before it does.
         model = replace(model, apart=tuple(map(_without_period, model.apart)))
     # Of a motion through phases it is not stated.

@@ -55,8 +55,17 @@ def smooth_motion(found: Modelled, times: Floats) -> PhaseMotion:
     return motion
 
 
-def ends_within(phase: Phase, time: float) -> bool:
-    """Return whether the motion of a phase ends before a time, or whether it does is not known."""
+def ends_within(motion: PhaseMotion, time: float, searched: float) -> bool:
+    """Return whether the first phase of a motion ends before a time, or whether it does is not known.
+
+    Parameters
+    ----------
+    searched : float
+        Time up to which a smooth motion is known (s).
+    """
+    if motion.smooth and time <= searched:
+        return motion.ended is not None and motion.ended.time <= time
+    phase = motion.phases[0]
     watched = _watched(phase)
     if not watched:
         return False

@@ -158,3 +158,19 @@ def test_what_ends_before_it_repeats_has_no_period(beside: list[dict[str, object
     answer = solve_scene(read(scene), [0.5])
     assert [part.period for part in answer.model.apart] == [None]
     assert answer.period is None
+
+
+@pytest.mark.parametrize(("speed", "repeats"), [(2.0, True), (5.5, False)])
+def test_whether_a_period_is_reached_does_not_depend_on_how_far_is_asked(speed: float, repeats: bool) -> None:
+    # Below sqrt(2 g l) the string stays taut; above, and below sqrt(4 g l), it is slack before the bob turns back.
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": 1, "at": [0, -1], "velocity": [speed, 0]}},
+        "connections": [{"kind": "string", "through": ["bob", [0, 0]]}],
+    }
+    periods = [
+        [part.period for part in solve_scene(read(scene), [time], ("trajectory", "equilibria")).model.apart]
+        for time in (0.1, 10.0)
+    ]
+    assert periods[0] == periods[1]
+    assert (periods[0][0] is not None) == repeats
