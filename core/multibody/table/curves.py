@@ -22,6 +22,7 @@ from core.multibody.algebra.polynomials import (
     coordinate,
     difference,
     evaluated,
+    is_zero,
     size,
 )
 from core.multibody.language.joints import GuideCurve
@@ -149,6 +150,9 @@ def _parameter(at: Curve, place: Sequence[Ball], guesses: Sequence[Ball], *, ske
             directed = 4 * scalar_product(turned, turned) < square
             extent = sum((abs(x) + abs(x - y) for x, y in zip(place, missed, strict=True)), ONE)
             if directed and (sketch or sum(map(abs, missed), ZERO) < CLOSE * extent):
-                return u
+                # Steps end beside the parameter; where it is a double, the place is on the curve without rounding.
+                near = ONE * float(u)
+                exact = all(is_zero(x - y) for x, y in zip(place, at(near), strict=True))
+                return near if exact else u
             break
     return None

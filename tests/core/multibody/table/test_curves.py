@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 
 from core.errors import InvalidParameter
 from core.multibody.answer import SceneSolution
 from core.multibody.language.reading import scene_from
+from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
 
 G = 10.0
@@ -88,6 +91,19 @@ def test_start_chooses_among_parameters_of_one_place() -> None:
         found = solved([0, 0], {"curve": ["cos(u)", "sin(2*u)/2"], "start": start})
         assert found.accelerations is not None
         assert found.accelerations["bead"].linear[0] == pytest.approx(side * G / 2)
+
+
+def test_digits_are_proven_where_the_parameter_is_a_double() -> None:
+    """The bead on the cycloid of the arc 4 sin(u/2), after one second from u = 5/2."""
+    track = {"kind": "track", "place": "bead", "on": {"curve": ["u + sin(u)", "-cos(u)"]}}
+    bodies = {"bead": {"mass": 2, "at": ["5/2 + sin(5/2)", "-cos(5/2)"]}}
+    scene = scene_from({"gravity": [0, -10], "bodies": bodies, "connections": [track]})
+    found = proven_answer(scene, 20, [Fraction(1)], ["trajectory"])
+    with mpmath.workdps(40):
+        arc = mpmath.sin(mpmath.mpf(5) / 4) * mpmath.cos(mpmath.sqrt(10) / 2)
+        height = 2 * arc**2 - 1
+        assert found.columns is not None
+        assert abs(mpmath.mpf(found.columns["bead.position"].values[0][1]) - height) < mpmath.mpf(10) ** -18
 
 
 def test_where_a_curve_loses_its_direction_the_motion_ends() -> None:
