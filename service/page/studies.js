@@ -1,6 +1,9 @@
 // Studies: their progress as it comes, and maps, histograms and links of those that are finished.
 import { ask, fetched, get } from "./api.js";
-import { $, color, make, onTheme, written } from "./dom.js";
+import { $, make, written } from "./dom.js";
+import { Histogram } from "./histogram.js";
+import { StudyMap, axisOf } from "./study_map.js";
+import { keepQuestion, openMember, showRefusals } from "./study_members.js";
 
 const STUDIES = "/v1/studies";
 const LARGEST_MAP = 250000;
@@ -11,6 +14,7 @@ const START = {
   quantities: ["/flip_interval", "/middle_axis_tilt/0"],
 };
 const rows = new Map();
+const map = new StudyMap($("map"), $("hovered"), (member) => openMember(shown.state, member).catch(tell)), histogram = new Histogram($("histogram"));
 let shown = null;
 
 /** What tells a study from others of the same question: what is varied, how often, and when it was submitted. */
@@ -67,17 +71,19 @@ async function remove(state) {
 /** Fetch what is drawn of a study: statistics, and the members of a map. */
 async function results(state) {
   const path = `${STUDIES}/${state.jobID}/results`;
-  const map = state.shape.length === 2 && state.count <= LARGEST_MAP;
-  const pages = [await get(`${path}?count=${map ? 10000 : 1}`)];
-  while (map && pages.at(-1).next) pages.push(await get(pages.at(-1).next));
+  const drawn = state.shape.length === 2 && Math.min(...state.shape) > 1 && state.count <= LARGEST_MAP;
+  const pages = [await get(`${path}?count=${drawn ? 10000 : 1}`)];
+  while (drawn && pages.at(-1).next) pages.push(await get(pages.at(-1).next));
   const column = (of, name) => pages.flatMap((page) => page[of][name]);
-  shown = { state, map, statistics: pages[0].statistics.figures, column };
+  shown = { state, drawn, statistics: pages[0].statistics.figures, column };
   $("shown").hidden = false;
+  $("member").hidden = true;
   $("shown-title").textContent = `${state.path}, ${state.count} members`;
   $("figure").replaceChildren(...state.figures.map((f) => make("option", { value: f.pointer, textContent: f.pointer })));
   const offered = state.links.filter((one) => one.rel === "results");
   $("links").replaceChildren(...offered.flatMap((one) => [link(one, state.jobID), " "]));
   draw();
+  await showRefusals(state, pages[0].statistics.failures);
 }
 
 function link({ href, type }, id) {
@@ -94,60 +100,24 @@ function link({ href, type }, id) {
 }
 
 function draw() {
-  const { state, map, statistics, column } = shown;
+  const { state, drawn, statistics } = shown;
   const figure = state.figures.find((f) => f.pointer === $("figure").value);
   const found = statistics[figure.pointer];
-  const unit = figure.unit && figure.unit !== "1" ? ` ${figure.unit}` : "";
+  const unit = figure.unit && figure.unit !== "1" ? figure.unit : "";
   const said = [["mean", found.mean], ["standard deviation", found.std], ["smallest", found.min?.value], ["largest", found.max?.value]];
-  $("numbers").textContent = `${found.present} members have this figure; ${said.filter(([, x]) => x != null).map(([name, x]) => `${name} ${written(x)}${unit}`).join(", ")}`;
-  $("map").hidden = $("scale").hidden = !map;
-  if (map) drawMap(state, column("figures", figure.pointer), state.inputs.map((axis) => column("inputs", axis.pointer)), found, unit);
-  drawHistogram(found.histogram, unit);
+  $("numbers").textContent = `${found.present} members have this figure; ${said.filter(([, x]) => x != null).map(([name, x]) => `${name} ${written(x)}${unit && ` ${unit}`}`).join(", ")}`;
+  $("map").hidden = $("hovered").hidden = !drawn;
+  $("hovered").textContent = "Grey cells have no value. A press opens the member.";
+  if (drawn) drawMap(shown, figure.pointer, found, unit);
+  $("histogram").hidden = !found.histogram;
+  if (found.histogram) histogram.show(found.histogram, figure.pointer, unit);
 }
 
-/** Colours from dark to light, of equal steps in lightness. */
-const shade = (share) => `hsl(${250 - 200 * share} 70% ${20 + 65 * share}%)`;
-
-function drawMap(state, values, [slow, fast], found, unit) {
-  const canvas = $("map"), context = canvas.getContext("2d"), [n, m] = state.shape;
-  const low = found.min?.value ?? 0, width = (found.max?.value ?? 1) - low || 1;
-  const left = 70, bottom = 40;
-  const x = (i) => left + Math.round((i * (canvas.width - left)) / n), y = (j) => Math.round((j * (canvas.height - bottom)) / m);
-  context.clearRect(0, 0, canvas.width, canvas.height);
-  values.forEach((value, k) => {
-    context.fillStyle = value === null ? color("line") : shade((value - low) / width);
-    const i = Math.floor(k / m), j = m - 1 - (k % m);
-    context.fillRect(x(i), y(j), x(i + 1) - x(i), y(j + 1) - y(j));
-  });
-  context.fillStyle = color("ink") || "currentColor";
-  context.font = "13px system-ui";
-  const name = (value) => (typeof value === "number" ? written(value, 4) : JSON.stringify(value));
-  const [a, b] = state.inputs.map((axis) => axis.pointer);
-  context.fillText(`${a}: ${name(slow[0])} to ${name(slow.at(-1))}`, left, canvas.height - 14);
-  context.save();
-  context.rotate(-Math.PI / 2);
-  context.fillText(`${b}: ${name(fast[0])} to ${name(fast.at(-1))}`, bottom - canvas.height, 24);
-  context.restore();
-  const text = `dark ${written(low)}${unit}, light ${written(low + width)}${unit}, grey: none`;
-  $("scale").textContent = text;
-  canvas.setAttribute("aria-label", `Map over ${a} and ${b}: ${text}`);
-}
-
-function drawHistogram(histogram, unit) {
-  const canvas = $("histogram"), context = canvas.getContext("2d");
-  canvas.hidden = !histogram;
-  if (!histogram) return;
-  const { edges, counts } = histogram, most = Math.max(...counts), height = canvas.height - 24;
-  const step = canvas.width / counts.length;
-  context.clearRect(0, 0, canvas.width, canvas.height);
-  context.fillStyle = color("deep");
-  counts.forEach((count, k) => context.fillRect(k * step, height * (1 - count / most), step - 1, (height * count) / most));
-  context.fillStyle = color("ink") || "currentColor";
-  context.font = "13px system-ui";
-  const ends = [edges[0], edges.at(-1)].map((edge) => written(edge, 4) + unit);
-  context.fillText(ends[0], 0, canvas.height - 6);
-  context.fillText(ends[1], canvas.width - context.measureText(ends[1]).width, canvas.height - 6);
-  canvas.setAttribute("aria-label", `Histogram from ${ends[0]} to ${ends[1]}, at most ${most} members in a bin`);
+/** The levels of both axes are those of the members in their order, the second one fastest. */
+function drawMap({ state, column }, figure, { min, max }, unit) {
+  const [slow, fast] = state.inputs.map(({ pointer }) => column("inputs", pointer)), [n, m] = state.shape;
+  const axes = { slow: axisOf(state.inputs[0], slow.filter((_, k) => k % m === 0).slice(0, n)), fast: axisOf(state.inputs[1], fast.slice(0, m)) };
+  map.show({ ...axes, values: column("figures", figure), low: min?.value ?? 0, high: max?.value ?? 1, unit, name: figure });
 }
 
 function tell(error) {
@@ -168,6 +138,9 @@ $("price").addEventListener("click", () => send(async (text) => {
   if (answer.answerable === false) throw Object.assign(new Error(), { errors });
   $("told").textContent = `${answer.cost.members} members; ${answer.why}`;
 }));
-$("start").addEventListener("click", () => send(async (text) => { follow((await ask(STUDIES, text)).answer).catch(tell); }));
-onTheme(() => shown && draw());
+$("start").addEventListener("click", () => send(async (text) => {
+  const { answer } = await ask(STUDIES, text);
+  keepQuestion(answer.jobID, JSON.parse(text));
+  follow(answer).catch(tell);
+}));
 get(STUDIES).then(({ studies }) => studies.forEach((state) => follow(state).catch(tell)), tell).finally(() => { document.body.dataset.ready = "yes"; });

@@ -24,7 +24,8 @@ def test_a_map_has_the_numbers_of_the_api(opened, base):
         page.locator("#figure").select_option(pointer)
         said = page.locator("#numbers").inner_text()
         assert said.startswith(f"{found['present']} members have this figure; mean {found['mean']:.6g}")
-        assert "Map over /body/moments/0 and /body/moments/1" in page.locator("#map").get_attribute("aria-label")
+        said = page.locator("#map .map").get_attribute("aria-label")
+        assert said.startswith(f"Map of {pointer} over /body/moments/0 and /body/moments/1, from ")
         assert page.locator("#histogram").get_attribute("aria-label").startswith("Histogram from ")
     with page.expect_download() as download:
         page.locator("#links button", has_text="npz").click()
@@ -35,6 +36,67 @@ def test_a_map_has_the_numbers_of_the_api(opened, base):
     page.locator("#list li button", has_text="Remove").click()
     page.locator("#none").wait_for()
     assert json.load(urlopen(f"{base}/v1/studies"))["studies"] == []
+
+
+def started(page, study):
+    """Start a study and show it."""
+    page.locator("#editor").fill(json.dumps(study))
+    page.locator("#start").click()
+    row = page.locator("#list li")
+    row.get_by_text("successful").wait_for(timeout=120_000)
+    row.get_by_role("button", name="Show").click()
+    page.locator("#map canvas").first.wait_for()
+
+
+def removed(page):
+    page.locator("#list li button", has_text="Remove").click()
+    page.locator("#none").wait_for()
+
+
+def test_a_cell_says_its_values_and_opens_its_member(opened, base, ask):
+    page = opened("/studies")
+    study = json.loads(page.locator("#editor").input_value())
+    for axis, count in zip(study["vary"], (4, 3), strict=True):
+        axis["count"] = count
+    started(page, study)
+    (state,) = json.load(urlopen(f"{base}/v1/studies"))["studies"]
+    columns = json.load(urlopen(f"{base}/v1/studies/{state['jobID']}/results?count=12"))
+    # The second cell of the first axis, the last of the second one: member 1*3 + 2.
+    over = page.locator("#map .map .u-over")
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    place = (box["x"] + box["width"] * 1.5 / 4, box["y"] + box["height"] * 0.5 / 3)
+    page.mouse.move(*place)
+    values = [columns["inputs"][axis["pointer"]][5] for axis in study["vary"]]
+    figure = columns["figures"]["/flip_interval"][5]
+    said = f"/body/moments/0 {values[0]:.5g}, /body/moments/1 {values[1]:.5g}: {figure:.6g} s"
+    assert page.locator("#hovered").inner_text() == said
+    page.mouse.click(*place)
+    member = page.locator("#member")
+    member.get_by_role("heading", name="Member 5").wait_for()
+    member.locator("summary").click()
+    first, _, body = member.locator("pre").inner_text().partition("\n")
+    answer = ask(first.removeprefix("POST "), json.loads(body))
+    assert answer["flip_interval"] == figure
+    # By keys: one cell to the right of it.
+    page.locator("#map .map").focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Enter")
+    member.get_by_role("heading", name="Member 8").wait_for()
+    removed(page)
+
+
+def test_refused_members_are_told_by_reason_with_an_example(opened):
+    page = opened("/studies", expected=REFUSED)
+    study = json.loads(page.locator("#editor").input_value())
+    # No moment of inertia is negative.
+    study["vary"] = [study["vary"][0] | {"min": -0.05, "count": 4}, study["vary"][1] | {"count": 3}]
+    started(page, study)
+    reasons = page.locator("#refusals li")
+    assert reasons.count() >= 1
+    reasons.first.locator("button").click()
+    page.locator("#member [role=status]", has_text=re.compile(r"^Refused \(.*\): /body")).wait_for()
+    removed(page)
 
 
 def test_a_fault_is_shown_with_its_place(opened):
