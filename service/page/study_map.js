@@ -31,7 +31,16 @@ export const axisInk = () => ({ stroke: color("soft"), grid: { show: false }, ti
 export class StudyMap {
   /** `said` receives the cell under the pointer in words; `open(member)` is called for a cell that is pressed. */
   constructor(panel, said, open) {
-    Object.assign(this, { panel, said, open, shown: null, plots: [], at: [0, 0] });
+    this.panel = panel;
+    this.said = said;
+    this.open = open;
+    /** @type {any} */
+    this.shown = null;
+    /** @type {any[]} */
+    this.plots = [];
+    this.at = [0, 0];
+    /** @type {number | null} */
+    this.hovered = null;
     this.map = make("div", { className: "map", tabIndex: 0, role: "application" });
     this.bar = make("div", { className: "bar", "aria-hidden": "true" });
     panel.append(this.map, this.bar);

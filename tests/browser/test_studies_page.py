@@ -4,6 +4,8 @@ import json
 import re
 from urllib.request import urlopen
 
+from axe_playwright_python.sync_playwright import Axe
+
 REFUSED = ("422",)
 
 
@@ -83,6 +85,12 @@ def test_a_cell_says_its_values_and_opens_its_member(opened, base, ask):
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
     member.get_by_role("heading", name="Member 8").wait_for()
+    for width in (1280, 390):
+        page.set_viewport_size({"width": width, "height": 844})
+        page.wait_for_timeout(500)
+        results = Axe().run(page)
+        assert results.violations_count == 0, results.generate_report()
+        assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
     removed(page)
 
 
