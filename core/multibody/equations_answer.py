@@ -110,7 +110,8 @@ class SceneEquations:
     linear : tuple of LinearEquations
         Of the parts whose equations are linear, or that have a place of rest near the start.
     closed_form : mapping of str to WrittenFormula
-        Coordinates as functions of the time, where these are elementary.
+        Coordinates as functions of the time, where these are elementary, and angles of pendulums by sn(u, m) and
+        am(u, m) of Jacobi.
     """
 
     coordinates: Mapping[str, str | None]

@@ -203,7 +203,9 @@ def noticed_of(found: Modelled, forces: list[ForceAtStart], multipliers: Multipl
         said.append(f"{name} partly repeats{beside}: the forces that are shared are not determined")
     for force, value in zip(measures.forces, forces, strict=True):
         if value.value is None:
-            said.append(f"{force.name} is not determined by the scene")
+            # Shared with nothing else, it acts along what no other connection holds, and what still cannot fail.
+            why = f": what {value.shared_with[0]} says with it is true anyway" if len(value.shared_with) == 1 else ""
+            said.append(f"{force.name} is not determined by the scene{why}")
     for limit in measures.limits:
         if limit.force is not None:
             tension = forces[limit.force].value

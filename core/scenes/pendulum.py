@@ -112,12 +112,12 @@ class Pendulum:
         return ONE.pi() / (2 * ONE.agm(self._modulus[1].sqrt()))
 
     @cached_property
-    def _speed(self) -> Ball:
+    def speed(self) -> Ball:
         """du/dt."""
         return self.frequency * (self.m.sqrt() if self.regime == "rotation" else 1)
 
     @cached_property
-    def _start(self) -> Ball:
+    def start(self) -> Ball:
         """u0."""
         return self._argument(self.sine, self.cosine, self.direction if self.regime != "libration" else sign(self._r))
 
@@ -142,7 +142,7 @@ class Pendulum:
         """Period of the angle, modulo a whole turn; None at rest and on the separatrix."""
         if self.regime in ("rest", "separatrix"):
             return None
-        return (4 if self.regime == "libration" else 2) * self._quarter / self._speed
+        return (4 if self.regime == "libration" else 2) * self._quarter / self.speed
 
     def passes(self, sine: Ball, cosine: Ball, way: int) -> Ball | None:
         """Return the first t >= 0 at which half the angle is passed the given way, or None.
@@ -154,16 +154,16 @@ class Pendulum:
             return None
         if regime == "libration" and sign(raised(sine, 2) - self.m) > 0:
             return None
-        distance = self._argument(sine, cosine, way) - self._start
+        distance = self._argument(sine, cosine, way) - self.start
         if regime == "separatrix":
-            return None if sign(distance) < 0 else distance / self._speed
+            return None if sign(distance) < 0 else distance / self.speed
         cycle = (4 if regime == "libration" else 2) * self._quarter
         turns = distance / cycle
         nearest = exact(float(turns.mid().floor()))
         rest = distance - nearest * cycle
         if sign(rest - cycle) == 0 or sign(rest) == 0:
             return ZERO
-        return rest / self._speed
+        return rest / self.speed
 
     def sample(self, times: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return s, c, psi' and the angle psi (continued over whole turns) at `times`.
@@ -180,10 +180,10 @@ class Pendulum:
         swing = float(2 * self.frequency * square_root(self.m))
         if regime == "separatrix":
             out = np.empty((2, times.size))
-            _separatrix_along(times, *as_pair(self._speed), *as_pair(self._start), out)
+            _separatrix_along(times, *as_pair(self.speed), *as_pair(self.start), out)
             d = float(self.direction)
             return d * out[0], out[1], d * swing * out[1], d * 2.0 * np.arctan2(out[0], out[1])
-        quarters = as_pair(self._speed / self._quarter)
+        quarters = as_pair(self.speed / self._quarter)
         if float(np.max(np.abs(times), initial=0.0)) * quarters[0] > LARGEST_QUARTER:
             raise AccuracyUnreachable(
                 UNIT_ROUNDOFF, 1.0, "the phase of the swing is lost after 2^50 quarter periods", path=("times",)
@@ -191,7 +191,7 @@ class Pendulum:
         m, m1 = self._modulus
         k, kc = as_pair(m.sqrt()), as_pair(m1.sqrt())
         out = np.empty((4, times.size))
-        _jacobi_along(times, lattice(*k, *kc), *quarters, *as_pair(self._start / self._quarter), out)
+        _jacobi_along(times, lattice(*k, *kc), *quarters, *as_pair(self.start / self._quarter), out)
         sn, cn, dn, phase = out
         if regime == "libration":
             s = float(m.sqrt()) * sn

@@ -81,7 +81,8 @@ class SceneEquations(View):
         description="Matrices of the parts with linear equations, or with a place of rest that is found near the start."
     )
     closed_form: dict[str, WrittenEquation] = Field(
-        description="Coordinates as functions of t, where these are elementary."
+        description="Coordinates as functions of t, where these are elementary, and angles of pendulums by Jacobi's "
+        "functions sn(u, m) and am(u, m)."
     )
 
 

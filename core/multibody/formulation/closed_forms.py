@@ -1,30 +1,33 @@
-"""Coordinates as functions of the time, of motions that are elementary ones."""
+"""Coordinates as functions of the time, of motions that are elementary ones, and of pendulums."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from core.formulas import Node
-from core.multibody.algebra.polynomials import Ball, is_zero
+from core.multibody.algebra.polynomials import is_zero
 from core.multibody.formulation.chart import Chart
+from core.multibody.formulation.elliptic_forms import elliptic_form
 from core.multibody.formulation.formula_nodes import Terms, call, node_of_terms
-from core.multibody.formulation.trigonometric_sums import TIME
+from core.multibody.formulation.sides import constant_accelerations
+from core.multibody.formulation.trigonometric_sums import TIME, Sum
 from core.multibody.motion.motion import ElementaryTerm, Motion
 
 _TIME = Node("name", TIME)
 
 
-def closed_forms(chart: Chart, motion: Motion, constant: Mapping[str, Ball] | None) -> dict[str, Node]:
-    """Return the variables of a chart as formulas of the time, where these are elementary.
+def closed_forms(chart: Chart, motion: Motion, equations: Mapping[str, Sum]) -> dict[str, Node]:
+    """Return the variables of a chart as formulas of the time, where these are elementary, or a pendulum's.
 
     Parameters
     ----------
     chart : Chart
     motion : Motion
         Of its table.
-    constant : mapping of str to ball, or None
-        Accelerations of all variables, where these are constant.
+    equations : mapping of str to Sum
+        What is zero, by the variable whose equation it is.
     """
+    constant = constant_accelerations(equations)
     if constant is not None:
         return {
             name: _formula(
@@ -34,7 +37,10 @@ def closed_forms(chart: Chart, motion: Motion, constant: Mapping[str, Ball] | No
         }
     terms = motion.elementary()
     if terms is None:
-        return {}
+        found = {
+            name: elliptic_form(name, one, chart.start[name], chart.rates[name]) for name, one in equations.items()
+        }
+        return {name: node for name, node in found.items() if node is not None}
     return {name: _formula(own) for name, own in zip(chart.symbols, terms, strict=True) if name in chart.variables}
 
 

@@ -23,7 +23,7 @@ from core.multibody.formulation.lagrange import lagrange_equations, measures_of
 from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
 from core.multibody.formulation.linear_equations import linear_equations
 from core.multibody.formulation.self_check import check_chart, check_formula
-from core.multibody.formulation.sides import Sides, constant_accelerations, equation_sides
+from core.multibody.formulation.sides import Sides, equation_sides
 from core.multibody.formulation.symbols import columns_of, coordinates_of, symbols_of
 from core.multibody.formulation.trigonometric_sums import Sum, added
 from core.multibody.motion.modelling import Modelled, Piece
@@ -188,7 +188,7 @@ def _write_part(
         written.linear += linear_equations(found.equations, chart.start)
     written.start |= chart.start
     written.rates |= chart.rates
-    written.closed |= closed_forms(chart, motion, constant_accelerations(found.equations))
+    written.closed |= closed_forms(chart, motion, found.equations)
     for k, i in enumerate(piece.indices):
         written.places[i] = chart.places[k]
 

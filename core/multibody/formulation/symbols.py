@@ -41,9 +41,9 @@ def _symbol(name: str) -> str:
         return f"{head}.d{axis}"
     if name.startswith("centre of "):
         return f"centre.{axis}"
-    # Along axes that are turned.
+    # Along axes that are turned, or an angle less a share of a gap.
     head = head.rstrip("'")
-    return f"{head}.s{_AXES.get(axis, axis)}"
+    return f"{head}.s{_AXES[axis]}" if axis in _AXES else f"{head}.{axis}0"
 
 
 def columns_of(reduced: Reduced, bodies: Collection[str], dimension: int) -> dict[int, Node]:

@@ -260,6 +260,11 @@ def _straighten(state: Reduced) -> bool:
         unit = table.units[pivot]
         changed = table.changed(expressions, range(len(table.names)))
         changed.names[pivot], changed.units[pivot] = f"{row.name}.gap", unit
+        for i in line:
+            if i != pivot and away[i] != 0:
+                # Along the level of the gap, and no longer along its axis.
+                head, _, axis = table.names[i].rpartition(".")
+                changed.names[i] = f"{head}'.{axis}"
         changed.q[pivot] = changed.v[pivot] = ZERO
         state.table = changed
         state.expressions = [substituted(expression, expressions) for expression in state.expressions]

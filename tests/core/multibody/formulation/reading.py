@@ -78,7 +78,30 @@ def _root(x: Jet) -> Jet:
     return x.through(mpmath.sqrt, 1 / (2 * mpmath.sqrt(x.value)), -1 / (4 * mpmath.sqrt(x.value) ** 3))
 
 
+def _sn(u: Jet, m: Jet) -> Jet:
+    sn, cn, dn = (mpmath.ellipfun(kind, u.value, m=m.value) for kind in ("sn", "cn", "dn"))
+    return u.through(lambda _: sn, cn * dn, -sn * (dn * dn + m.value * cn * cn))
+
+
+def _am(u: Jet, m: Jet) -> Jet:
+    """Jacobi's amplitude, by which Legendre's integral of the first kind is u."""
+    guess = mpmath.pi * u.value / (2 * mpmath.ellipk(m.value))
+    angle = mpmath.findroot(lambda x: mpmath.ellipf(x, m.value) - u.value, guess)
+    dn = mpmath.sqrt(1 - m.value * mpmath.sin(angle) ** 2)
+    return u.through(lambda _: angle, dn, -m.value * mpmath.sin(angle) * mpmath.cos(angle))
+
+
+def _asin(x: Jet) -> Jet:
+    root = mpmath.sqrt(1 - x.value**2)
+    return x.through(mpmath.asin, 1 / root, x.value / root**3)
+
+
 _FUNCTIONS: dict[str, Callable[..., Jet]] = {
+    "sn": _sn,
+    "am": _am,
+    "asin": _asin,
+    "atan": lambda x: x.through(mpmath.atan, 1 / (1 + x.value**2), -2 * x.value / (1 + x.value**2) ** 2),
+    "sinh": lambda x: x.through(mpmath.sinh, mpmath.cosh(x.value), mpmath.sinh(x.value)),
     "sin": lambda x: x.through(mpmath.sin, mpmath.cos(x.value), -mpmath.sin(x.value)),
     "cos": lambda x: x.through(mpmath.cos, -mpmath.sin(x.value), -mpmath.cos(x.value)),
     "exp": lambda x: x.through(mpmath.exp, mpmath.exp(x.value), mpmath.exp(x.value)),

@@ -62,25 +62,23 @@ CLOSED = {
     name: count
     for count, names in {
         0: """
-            alpha-particle asymmetric-top atwood-machine-with-spring ball-in-bowl ball-in-cylinder
-            bead-on-hoop bead-on-parabola bead-on-rough-ring block-tips-over drawer-pulled-aside
-            rocking-block centrifugal-governor coin-rolls-round
-            conical-pendulum coupled-pendulums cradle-of-two crank-slider cylinder-in-cylinder
-            cylinder-on-cylinder disc-leaves-cylinder double-pendulum double-pendulum-of-points
-            driven-duffing-oscillator elastic-pendulum fall-with-drag foucault-pendulum four-bar-linkage
-            four-legged-table gyroscope-with-offset-mass inverted-pendulum-on-torsion-spring kapitza-pendulum
-            kepler-ellipse kovalevskaya-top ladder-leaves-wall ladder-on-rails lagrange-points lagrange-top
-            loaded-hoop loop-with-slack-string pendulum-on-cart pendulum-timed physical-pendulum
-            plank-on-two-strings precessing-top rattleback rod-against-stop rod-in-cylinder rod-on-edge
-            simple-pendulum sleeping-top sphere-on-turntable spherical-pendulum stone-across-slope
-            stone-leaves-hollow-sphere swinging-atwood-machine three-body-figure-eight trammel
-            vibrating-dumbbell weight-under-table
+            alpha-particle asymmetric-top atwood-machine-with-spring ball-in-bowl ball-in-cylinder bead-on-hoop
+            bead-on-parabola bead-on-rough-ring centrifugal-governor coin-rolls-round conical-pendulum
+            coupled-pendulums crank-slider cylinder-on-cylinder double-pendulum double-pendulum-of-points
+            drawer-pulled-aside driven-duffing-oscillator elastic-pendulum fall-with-drag foucault-pendulum
+            four-bar-linkage four-legged-table gyroscope-with-offset-mass inverted-pendulum-on-torsion-spring
+            kapitza-pendulum kepler-ellipse kovalevskaya-top lagrange-points lagrange-top loaded-hoop
+            pendulum-on-cart plank-on-two-strings precessing-top rattleback rod-in-cylinder rod-on-edge
+            sleeping-top sphere-on-turntable spherical-pendulum stone-across-slope swinging-atwood-machine
+            three-body-figure-eight trammel vibrating-dumbbell weight-under-table
         """,
         1: """
             atwood-machine ball-and-stick ball-on-ball-dropped bead-on-rotating-rod block-and-tackle
-            blocks-count-pi blocks-on-incline bounce-to-rest chain-off-table chain-over-peg
-            cylinder-on-incline damped-oscillator dumbbell-dropped dumbbell-dropped-in-space massive-pulley
-            spool spool-rolls-away spool-winds-up weight-lands yo-yo
+            block-tips-over blocks-count-pi blocks-on-incline bounce-to-rest chain-off-table chain-over-peg
+            cradle-of-two cylinder-in-cylinder cylinder-on-incline damped-oscillator disc-leaves-cylinder
+            dumbbell-dropped dumbbell-dropped-in-space ladder-leaves-wall ladder-on-rails loop-with-slack-string
+            massive-pulley pendulum-timed physical-pendulum rocking-block rod-against-stop simple-pendulum spool
+            spool-rolls-away spool-winds-up stone-leaves-hollow-sphere weight-lands yo-yo
         """,
         2: """
             band-brake binary-stars block-on-spring-with-friction block-up-rough-incline
@@ -101,7 +99,7 @@ CLOSED = {
     }.items()
     for name in names.split()
 }
-"""How many coordinates of each are elementary functions of the time."""
+"""How many coordinates of each are elementary or elliptic functions of the time."""
 
 UNSEEN = {"ball-bounces-with-spin": (2, 1), "lagrange-top": (2, 0), "precessing-top": (2, 0)}
 """Of how many of both no column shows, at a later time, the rates on which they depend."""

@@ -190,6 +190,23 @@ def test_an_unknown_name_is_answered_with_what_relations_may_have() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    "always",
+    ["p.x - p.x", "(p.x + p.y)^2 - p.x^2 - p.y^2 - 2*p.x*p.y", "cos(p.x)^2 + sin(p.x)^2 - 1", "(0.1 + 0.2 - 0.3)*p.x"],
+)
+@pytest.mark.parametrize("x", [0, 1000])
+def test_a_relation_that_is_always_true_is_noticed_and_ties_nothing(always: str, x: float) -> None:
+    found = answer(point(x, 0, relation(always)))
+    noticed = "r.force is not determined by the scene: what r says with it is true anyway"
+    assert noticed in found.model.noticed
+    np.testing.assert_allclose(columns(found, "p.velocity")[0], np.outer(TIMES, [0, -10]), rtol=1e-14, atol=1e-13)
+    assert found.forces is not None
+    assert not found.forces["r.force"].determined
+    tied = [relation("p.x - p.y"), {**relation("2*p.x - 2*p.y"), "name": "s"}]
+    for connections in (tied[:1], tied):
+        assert not any("anyway" in one for one in answer(point(0, 0, *connections)).model.noticed)
+
+
 @pytest.mark.parametrize("equals", ["sin(w.angle)", "tan(w.angle)", "w.angle*cos(w.angle)", "w.angle*exp(w.angle^2)"])
 @pytest.mark.parametrize("beside", [False, True])
 def test_a_relation_that_holds_at_the_start_alone_is_singular_there(equals: str, beside: bool) -> None:
