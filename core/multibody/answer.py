@@ -161,6 +161,29 @@ class SceneExtremes:
 
 
 @dataclass(frozen=True)
+class ModeShape:
+    """How bodies move in a mode: Re((positions + i quarter) exp((growth_rate + i frequency) t)).
+
+    The largest change of a position is 1, or of an angle where no centre moves.
+
+    Attributes
+    ----------
+    positions, angles : mapping
+        Changes of centres of mass, and in the plane of angles, for each metre (or radian) of the largest.
+    positions_quarter, angles_quarter : mapping or None
+        What moves a quarter of a period apart; None where all moves in phase.
+    error : float
+        Of all of them.
+    """
+
+    positions: Mapping[str, tuple[float, ...]]
+    angles: Mapping[str, float]
+    positions_quarter: Mapping[str, tuple[float, ...]] | None
+    angles_quarter: Mapping[str, float] | None
+    error: float
+
+
+@dataclass(frozen=True)
 class EquilibriumErrors:
     """Errors of positions, as the lengths of vectors (m), and of angles (rad), by body."""
 
@@ -185,6 +208,8 @@ class Equilibrium:
         Largest force left over, relative to the forces of the scene.
     errors : EquilibriumErrors
         Of positions and angles.
+    shapes : tuple of ModeShape or None
+        Of the modes, in their order; None of those whose roots coincide, and of such as no column shows.
     """
 
     positions: Mapping[str, tuple[float, ...]]
@@ -193,6 +218,7 @@ class Equilibrium:
     modes: tuple[SmallMotion, ...]
     residual: float
     errors: EquilibriumErrors
+    shapes: tuple[ModeShape | None, ...] = ()
 
 
 @dataclass(frozen=True)

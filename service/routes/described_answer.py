@@ -182,6 +182,21 @@ class SceneOccurrence(View):
     how: How = Field(description="How the error of the quantity is known.")
 
 
+class ModeShape(View):
+    """How bodies move in a mode, with the largest change of a position 1 m, or of an angle 1 rad where no centre moves.
+
+    q = Re((change + i change a quarter of a period apart) exp((growth_rate + i frequency) t)).
+    """
+
+    positions: dict[str, Metres] = Field(description="Changes of centres of mass.")
+    angles: dict[str, Radians[float]] = Field(description="Changes of angles, in the plane.")
+    positions_quarter: dict[str, Metres] | None = Field(
+        description="Changes a quarter of a period apart; null where all moves in phase."
+    )
+    angles_quarter: dict[str, Radians[float]] | None = Field(description="The same of angles.")
+    error: Annotated[float, Unit("as in the changes")] = Field(description="Bound of the error of all of them.")
+
+
 class SceneEquilibrium(View):
     """A place where the scene can rest."""
 
@@ -189,6 +204,9 @@ class SceneEquilibrium(View):
     angles: dict[str, Radians[float]] = Field(description="In the plane, where the direction of a body matters.")
     stable: bool | None = Field(description="null where the small motions do not decide.")
     modes: list[SmallMotion[float]]
+    shapes: list[ModeShape | None] = Field(
+        description="Of the modes, in their order; null of those that coincide, of which every combination is a mode."
+    )
     residual: Ratio[float] = Field(description="Largest force left over, relative to the forces of the scene.")
     errors: dict[str, dict[str, Annotated[float, Unit("as in the field of that name")]]] = Field(
         description="Bounds of the errors of positions, as the length of a vector, and of angles, by body."

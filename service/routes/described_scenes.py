@@ -80,7 +80,14 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if found.occurrences is not None:
         answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
-        answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
+        answer["equilibria"] = [
+            fields_of(one)
+            | {
+                "modes": _modes(one.modes),
+                "shapes": [None if shape is None else fields_of(shape) for shape in one.shapes],
+            }
+            for one in found.equilibria
+        ]
     if found.assembly is not None:
         answer["assembly"] = assembly_fields(found.assembly)
     if found.thresholds is not None:

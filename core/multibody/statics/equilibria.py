@@ -25,6 +25,7 @@ from core.multibody.reduction.passes import reduced
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.statics.equilibrium_search import MOST_FOUND, solutions_of
 from core.multibody.statics.exact_places import ExactPlace, RestEquations, Tie
+from core.multibody.statics.mode_shapes import mode_shape
 from core.multibody.statics.places_beside import places_beside
 from core.multibody.statics.resting_places import RestingPlaces
 from core.multibody.statics.small_motions import small_motions, soft_directions
@@ -154,7 +155,7 @@ def _apart(x: Ball, y: Ball, size: Ball) -> bool:
 
 def _described(found: Described, small: Reduced, equations: RestEquations, place: ExactPlace) -> Equilibrium:
     try:
-        modes, stable = small_motions(equations, place)
+        modes, changes, stable = small_motions(equations, place)
     except (ValueError, ZeroDivisionError) as fault:
         raise _out_of_range("the masses differ by more than 320 bits can resolve") from fault
     shown = tuple(mode.in_doubles() for mode in modes)
@@ -180,7 +181,12 @@ def _described(found: Described, small: Reduced, equations: RestEquations, place
     numbers = [*(x for centre in positions.values() for x in centre), *(x for mode in shown for x in mode[:2])]
     if not np.isfinite(numbers).all() or not all(map(isfinite, [*wrong.values(), *turned.values()])):
         raise _out_of_range("the search for equilibria leaves the range of doubles")
-    return Equilibrium(positions, angles, stable, shown, equations.share_left(place), EquilibriumErrors(wrong, turned))
+    frames = found.measures.coordinates.frames
+    shapes = tuple(
+        None if change is None else mode_shape(frames, small.expressions, place.q, change) for change in changes
+    )
+    errors = EquilibriumErrors(wrong, turned)
+    return Equilibrium(positions, angles, stable, shown, equations.share_left(place), errors, shapes)
 
 
 def _length(errors: Sequence[float | None]) -> float:

@@ -17,6 +17,7 @@ from core.multibody.algebra.rank import Elimination
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.motion.motion import Mode
 from core.multibody.statics.exact_places import ExactPlace, RestEquations
+from core.multibody.statics.mode_shapes import Change, change_along, matched, vectors_of
 from core.multibody.table.table import Table
 from core.work import spend
 
@@ -34,8 +35,19 @@ class SoftDirection(NamedTuple):
     share: float
 
 
-def small_motions(equations: RestEquations, place: ExactPlace) -> tuple[list[Mode], bool | None]:
-    """Return the modes near a place of rest, and whether it is stable; None where they do not decide.
+class SmallMotions(NamedTuple):
+    """Modes near a place of rest, the change of coordinates in each as far as it is one, and whether it is stable.
+
+    None where they do not decide.
+    """
+
+    modes: list[Mode]
+    changes: list[Change | None]
+    stable: bool | None
+
+
+def small_motions(equations: RestEquations, place: ExactPlace) -> SmallMotions:
+    """Return the small motions near a place of rest.
 
     Raises
     ------
@@ -44,7 +56,7 @@ def small_motions(equations: RestEquations, place: ExactPlace) -> tuple[list[Mod
     """
     directions = _directions(equations, place)
     if not directions:
-        return [], True
+        return SmallMotions([], [], True)
     mass, damping = _mass(equations.table), _damping(equations.table, place.q)
     m, d, k = (_projected(matrix, directions) for matrix in (mass, damping, equations.stiffness(place.multipliers)))
     size = len(directions)
@@ -55,22 +67,38 @@ def small_motions(equations: RestEquations, place: ExactPlace) -> tuple[list[Mod
         squares = sorted(_squares(stiff), key=lambda x: float(x.mid()))
         modes = [Mode(_root(x), ZERO) if not x < 0 else Mode(ZERO, _root(-x)) for x in squares]
         lowest = squares[0]
-        return modes, True if lowest > 0 else (False if lowest < 0 else None)
+        vectors = [(_root_of_square(square), vector) for square, vector in vectors_of(stiff, size)]
+        stable = True if lowest > 0 else (False if lowest < 0 else None)
+        return SmallMotions(modes, _changes(modes, vectors, directions), stable)
     damped = inverse * arb_mat(d)
-    system = acb_mat(
+    real_system = arb_mat(
         [[ONE if j == size + i else ZERO for j in range(2 * size)] for i in range(size)]
         + [[-stiff[i, j] for j in range(size)] + [-damped[i, j] for j in range(size)] for i in range(size)]
     )
-    roots = _roots(system, 2 * size)
+    roots = _roots(acb_mat(real_system), 2 * size)
     kept = [root for root in roots if is_zero(root.imag) or root.imag > 0]
     kept.sort(key=lambda root: (float(root.imag.mid()), float(root.real.mid())))
     modes = [Mode(root.imag, root.real) for root in kept]
+    changes = _changes(modes, vectors_of(real_system, size), directions)
     if any(root.real > 0 for root in roots):
-        return modes, False
+        return SmallMotions(modes, changes, False)
     if all(root.real < 0 for root in roots):
-        return modes, True
+        return SmallMotions(modes, changes, True)
     # Damping and gyroscopic terms cannot destroy a minimum of the potential.
-    return modes, True if symmetric and _positive_definite(k) else None
+    return SmallMotions(modes, changes, True if symmetric and _positive_definite(k) else None)
+
+
+def _changes(
+    modes: list[Mode], vectors: list[tuple[Any, list[Any]]], directions: list[dict[int, Ball]]
+) -> list[Change | None]:
+    found = matched(modes, vectors)
+    return [None if vector is None else change_along(directions, vector) for vector in found]
+
+
+def _root_of_square(square: Any) -> Any:
+    """Return the root with which a mode of an angular frequency with this square is listed."""
+    root = _root(abs(square.real))
+    return acb(0, root) if not square.real < 0 else acb(root, 0)
 
 
 def soft_directions(equations: RestEquations, place: ExactPlace) -> list[SoftDirection]:
