@@ -315,7 +315,7 @@ def kinetic(table: Table) -> Ball:
 def potential(table: Table) -> Ball:
     """Return q K q/2 - b q at the start."""
     total = ZERO
-    for i, value in table.load.items():
+    for i, value in table.potential_load.items():
         total = total - value * table.q[i]
     for (i, j), value in table.stiffness.items():
         total = total + value * table.q[i] * table.q[j] / 2

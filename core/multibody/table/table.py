@@ -207,6 +207,18 @@ class Table:
         """The laws whose forces are no entries of D."""
         return [law for law in self.laws if not law.in_table]
 
+    @property
+    def potential_load(self) -> dict[int, Ball]:
+        """The loads that have a potential: without those of formulas that are constant on their piece."""
+        constant = [law for law in self.laws if law.in_table and not law.inputs]
+        if not constant:
+            return self.load
+        found = dict(self.load)
+        for law, value in zip(constant, values_at(constant, self.q, self.v), strict=True):
+            for i, factor in law.push.items():
+                add_term(found, i, -factor * value)
+        return found
+
     def forces(self) -> list[Ball]:
         """Return b - K q - D q' + B(q, q') + G f(q, q') at the start."""
         q, v = self.q, self.v

@@ -198,7 +198,7 @@ class Columns:
         for (i, j), value in table.mass.items():
             term = float(value) * (0.5 if i == j else 1.0) * v[:, i, 0] * v[:, j, 0]
             kinetic, sizes[0] = kinetic + term, sizes[0] + np.abs(term)
-        for i, value in table.load.items():
+        for i, value in table.potential_load.items():
             term = -float(value) * q[:, i, 0]
             potential, sizes[1] = potential + term, sizes[1] + np.abs(term)
         for (i, j), value in table.stiffness.items():

@@ -320,7 +320,7 @@ def _kinetic(whole: Whole, pieces: Pieces) -> Curve:
 def _potential(whole: Whole, pieces: Pieces) -> Curve:
     table = whole.measures.table
     total = Curve.constant(whole.measures.potential, pieces.shape)
-    for i, load in table.load.items():
+    for i, load in table.potential_load.items():
         total = total.plus(-load, pieces.place(i))
     for (i, j), stiffness in table.stiffness.items():
         total = total.plus(stiffness / 2, pieces.place(i).times(pieces.place(j)))

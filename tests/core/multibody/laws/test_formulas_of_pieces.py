@@ -76,6 +76,18 @@ def test_a_body_between_two_forces_that_are_constant() -> None:
     compared(answer(scene(["-sign(x)", 0], at=[1, 0]), [0.0, 1.0, 2.0, 10.0]), "p.position", lambda t: [place(t), 0])
 
 
+def test_forces_that_are_constant_on_their_piece_are_in_no_potential() -> None:
+    """Of x'' = 3 - sign(x) from 1 the weight of 3 N alone has one: -3 x with x = 1 + t^2, which is -3.75 at 1/2 s."""
+    outputs = ("trajectory", "energy-in-time", When("energy.potential", "-3.75"))
+    found = answer(scene(["-sign(x)", 0], [3, 0], at=[1, 0]), [0.0, 0.5, 1.0], outputs)
+    assert found.trajectory is not None
+    columns = found.trajectory.columns
+    np.testing.assert_allclose(columns["energy.potential"].values, [-3, -3.75, -6], rtol=1e-14)
+    np.testing.assert_allclose(columns["energy.kinetic"].values, [0, 0.5, 2], atol=1e-14)
+    assert found.occurrences is not None
+    assert [one.time for one in found.occurrences] == pytest.approx([0.5], abs=1e-14)
+
+
 def test_a_spring_by_a_square_has_its_largest_speed_in_the_middle() -> None:
     """x'' = -|x| x from 1 at rest: v^2 = 2 (1 - |x|^3)/3, and a quarter of a period is an integral."""
     outputs = ("trajectory", ExtremesOf("p.velocity.x"), When("p.position.x", 0))
