@@ -91,15 +91,19 @@ def _of_track(phase: Phase, k: int, times: Times, *, finer: bool) -> States:
     states = whole.states(late, finer=finer)
     if not np.any(rest):
         return states
-    q, v = _later(phase, k, states.q, states.v, rest)
-    reference = None if states.reference is None else _later(phase, k, *states.reference, rest)
+    # Pairs take in of an acceleration what doubles hold of it, which is the same of both computations.
+    gain = (
+        np.array([float(x) for x in whole.acceleration]) if whole.uniform else whole.accelerations(states.q, states.v)
+    )
+    # What rests gains nothing, and not what rounding leaves of the forces on it.
+    gain = np.where(phase.still, 0.0, gain)
+    q, v = _later(states.q, states.v, gain, rest)
+    reference = None if states.reference is None else _later(*states.reference, gain, rest)
     return States(q, v, states.q_error, states.v_error, reference)
 
 
-def _later(phase: Phase, k: int, q: Floats, v: Floats, rest: Floats) -> tuple[Floats, Floats]:
+def _later(q: Floats, v: Floats, gain: Floats, rest: Floats) -> tuple[Floats, Floats]:
     """Return states later by the tails of times: so small that one term of the Taylor series is right to pairs."""
-    # What rests gains nothing, and not what rounding leaves of the forces on it.
-    gain = np.where(phase.still, 0.0, phase.models[k].whole.accelerations(q, v))
     return _added(q, rest[:, None] * v[..., 0]), _added(v, rest[:, None] * gain)
 
 
