@@ -287,7 +287,7 @@ TESTED_IN |= {
     f"core/find/{name}.py": "core/find/test_search.py"
     for name in (
         *("borders", "evaluations", "extremes", "figures", "infinite", "minima"),
-        *("roots", "scanning", "solutions", "systems", "varied"),
+        *("known_roots", "roots", "scanning", "solutions", "systems", "varied"),
     )
 }
 TESTED_IN |= {

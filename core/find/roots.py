@@ -1,21 +1,18 @@
-"""Where a figure takes a value: roots, double ones, jumps past the value, and ranges on which it has it throughout.
-
-A root is bounded by two inputs with which the figure is above and below the value by more than its errors: whatever is
-continuous between them has a root there. The figure's error and its slope thus decide how well the root is known.
-"""
+"""Where a figure takes a value: roots, double ones, jumps past the value, and ranges on which it has it throughout."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf, log, log2
+from math import inf
 
 from core.find.evaluations import Curve
 from core.find.infinite import grows
+from core.find.known_roots import Difference
 from core.find.minima import Three, UndefinedBetween, drop_to_vertex, least_of, reaches_zero
 from core.find.scanning import FINEST_BORDER, Run, interpolated, scanned
 from core.find.solutions import Family, Nearest, Solution
-from core.find.varied import beside, neighbours, rounding
+from core.find.varied import neighbours, rounding
 
 MOST_STEPS = 200
 """Steps towards a root: halving alone reaches neighbouring doubles in 64, and 128 halvings are enough for one at 0."""
@@ -26,23 +23,11 @@ POINTS = 4
 MOST_PASSES = 3
 """How often the samples are looked through: again after gaps in the figure were met between them."""
 
-LOOKED_AT = 1e-5
-"""Share of the first values below which a value is compared with its error, which may cost questions of its own."""
-
 DIP = 0.5
 """Share of the smallest sample below which a minimum between samples is looked for: doubts are below that elsewhere."""
 
 STEEP = 4.0
 """A step between neighbouring doubles is a jump if it is so many times the steps beside it."""
-
-WIDER = 4.0
-"""Factor by which the bracket of a root is widened until the figure is decided at its ends."""
-
-STEEPER = 1.5
-"""Power of the distance above which the multiplicity of a root is looked at."""
-
-FARTHER = 100.0
-"""How many times farther than an end of the bracket a sample is by which that power is seen."""
 
 
 @dataclass
@@ -113,7 +98,7 @@ class _Crossed(Exception):
         self.x = x
 
 
-class _Search:
+class _Search(Difference):
     """Looks for the roots of a figure less a target.
 
     Attributes
@@ -123,21 +108,8 @@ class _Search:
     """
 
     def __init__(self, curve: Curve, target: float) -> None:
-        self._curve, self._target = curve, target
-        self._least, self._most = curve.varied.least, curve.varied.most
+        super().__init__(curve, target)
         self.gaps = 0
-
-    def g(self, x: float) -> float:
-        """Return the figure less the target."""
-        number = self._curve.number(x)
-        if number is None:
-            raise UndefinedBetween
-        return number - self._target
-
-    def is_zero(self, x: float, size: float) -> bool:
-        """Return whether the figure has the value within its error; `size` is that of values about it."""
-        g = abs(self.g(x))
-        return g == 0.0 or (g <= LOOKED_AT * size and g <= self._curve.error(x))
 
     def zeros(self, run: Run) -> list[int]:
         """Return which samples have the value within their errors."""
@@ -245,79 +217,10 @@ class _Search:
             for near, far in ((low, low - 4.0 * rounding(low)), (high, high + 4.0 * rounding(high)))
             if first[0] <= far <= first[1] and self._curve.number(far) is not None
         ]
-        if step > STEEP * max(steps, default=0.0) and self._decided(low) and self._decided(high):
+        if step > STEEP * max(steps, default=0.0) and self.decided(low) and self.decided(high):
             below, above = self._curve.number(low), self._curve.number(high)
             return Solution((low,), (high - low + rounding(low),), "jump", below=below, above=above)
         return self.certified(low, high, first)
-
-    def _decided(self, x: float) -> bool:
-        return abs(self.g(x)) > self._curve.error(x)
-
-    def certified(self, x: float, other: float, within: tuple[float, float] | None = None) -> Solution:
-        """Return a root at or between two inputs, with a bracket on whose ends the figure is decided."""
-        low, high = within or (self._least, self._most)
-        best = min((x, other), key=lambda place: abs(self.g(place)))
-        g, error = self.g(best), self._curve.error(best)
-        slope = self._slope(best, error)
-        needed = 2.0 * (abs(g) + error) / slope if slope > 0.0 else 0.0
-        ends = [self._end_of_bracket(best, needed, side, low, high) for side in (-1, 1)]
-        distance = max(abs(end - best) for end in ends)
-        # A root at an end of the range may be beyond it by as much as is not known.
-        distance = max(distance, needed if best in (self._least, self._most) else 0.0, 2.0 * rounding(best))
-        even = all(map(self._decided, ends)) and self.g(ends[0]) * self.g(ends[1]) > 0.0
-        steep = even or self._power(best, ends) > STEEPER
-        multiplicity = self._multiplicity(best, distance, even=even) if steep else 1
-        value = self._curve.number(best)
-        figures = None if value is None else (value,)
-        return Solution((best,), (distance,), "root", multiplicity, figures, (error,))
-
-    def _power(self, x: float, ends: list[float]) -> float:
-        """Return with which power of the distance a figure leaves the target, from the samples that there are."""
-        powers = []
-        for side, end in zip((-1, 1), ends, strict=True):
-            far = [p for p in self._curve.known if (p - end) * side > 0.0 and self._curve.number(p) is not None]
-            if far and end != x and self._decided(end):
-                for p in sorted(far, key=lambda p: abs(p - x)):
-                    if abs(p - x) > FARTHER * abs(end - x):
-                        powers.append(log(abs(self.g(p) / self.g(end))) / log(abs((p - x) / (end - x))))
-                        break
-        return max(powers, default=1.0)
-
-    def _slope(self, x: float, error: float) -> float:
-        """Return the smaller slope to either of the nearest samples that are decided; 0 without any."""
-        slopes = []
-        for side in (-1, 1):
-            beside = [p for p in self._curve.known if (p - x) * side > 0.0 and self._curve.number(p) is not None]
-            for p in sorted(beside, key=lambda p: abs(p - x)):
-                if abs(self.g(p)) > 10.0 * error:
-                    slopes.append(abs(self.g(p)) / abs(p - x))
-                    break
-        return min(slopes, default=0.0)
-
-    def _end_of_bracket(self, x: float, distance: float, side: int, low: float, high: float) -> float:
-        """Return the nearest input found on a side with which the figure is decided; the limit if there is none."""
-        limit = low if side < 0 else high
-        distance = max(distance, 2.0 * rounding(x))
-        while True:
-            end = beside(x, distance)[0 if side < 0 else 1]
-            if (limit - end) * side <= 0.0:
-                return limit
-            if self._curve.number(end) is not None and self._decided(end):
-                return end
-            distance *= WIDER
-
-    def _multiplicity(self, x: float, distance: float, *, even: bool) -> int:
-        """Return the power with which a figure leaves the target, by its values at one and two distances."""
-        powers = []
-        for side in (-1.0, 1.0):
-            near, far = x + side * WIDER * distance, x + side * 2.0 * WIDER * distance
-            if self._least <= far <= self._most and None not in (self._curve.number(near), self._curve.number(far)):
-                one, two = abs(self.g(near)), abs(self.g(far))
-                if one > 0.0 and two > 0.0:
-                    powers.append(log2(two / one))
-        power = round(sum(powers) / len(powers)) if powers else 1
-        least = 2 if even else 1
-        return max(least, power if power % 2 == least % 2 else power - 1)
 
     def dip(self, run: Run, i: int) -> list[Solution | None]:
         """Return the roots about a sample that is nearer to the target than both beside it, on the same side."""
