@@ -199,7 +199,8 @@ REGISTRY: Mapping[str, ProblemType] = {
             "deadline-exceeded",
             503,
             "The computation took longer than it may",
-            "Request fewer samples or a lower accuracy.",
+            "Send the request with the header `Prefer: respond-async`: it is then answered in the background, as a "
+            "study of one. Or request fewer samples, a lower accuracy, or a narrower range of what is looked for.",
         ),
         ProblemType(
             "no-room",
