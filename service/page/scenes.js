@@ -14,6 +14,7 @@ import { Inspector } from "./inspector.js";
 import { placeOf } from "./json_places.js";
 import { Live } from "./live.js";
 import { drawn, isNamed } from "./named_scenes.js";
+import { Measures } from "./measures.js";
 import { mark, numberOf } from "./number_fields.js";
 import { Palette } from "./palette.js";
 import { showParts } from "./parts_list.js";
@@ -60,6 +61,7 @@ const atStart = () => !player.playing && player.time === 0;
 const board = new Board({ doc, view: plane, say, ready, atStart, start: toStart, selected: showSelection, dropped, rename: renameInPlace });
 const inspector = new Inspector($("inspector"), { doc, board, edit, rename });
 const palette = new Palette($("palette"), $("connect"), { board, say });
+new Measures({ view: plane, panel: $("measures"), say });
 const act = selectionActions({ doc, board, say, start: toStart, selected: showSelection });
 
 player.onTime((time) => {
@@ -303,6 +305,7 @@ function show({ answer: next, text }, how, path) {
 function showView(how) {
   $("plane-view").hidden = model.space;
   $("space-view").hidden = !model.space;
+  $("measures").hidden = model.space;
   if (model.space) {
     if (!space) {
       space = new SpaceView($("space-view"));
