@@ -27,7 +27,7 @@ function keyed(event, act, px) {
     return act.shift(ARROWS[key].map((x) => x * step)) ?? true;
   }
   if (event.key === "PageUp" || event.key === "PageDown") return act.lift((key === "PageUp" ? 1 : -1) * gridStep(px()) * (event.shiftKey ? 10 : 1)) ?? true;
-  const plain = { Delete: act.remove, Backspace: act.remove, F2: act.rename, Escape: act.nothing, Enter: act.finish, "+": act.closer, "-": act.farther, "]": () => act.next(1), "[": () => act.next(-1), ".": () => act.turn(-TURN), ",": () => act.turn(TURN), " ": act.play };
+  const plain = { Delete: act.remove, Backspace: act.remove, F2: act.rename, Escape: act.nothing, Enter: act.finish, "+": act.closer, "-": act.farther, "]": () => act.next(1), "[": () => act.next(-1), ".": () => act.turn(-TURN), ",": () => act.turn(TURN), v: act.stand, " ": act.play };
   return plain[key] ? plain[key]() ?? true : false;
 }
 

@@ -106,6 +106,7 @@ $("undo").onclick = () => act.undo();
 $("redo").onclick = () => act.redo();
 $("delete").onclick = () => act.remove();
 $("duplicate").onclick = () => act.duplicate();
+$("stand").onclick = () => act.stand();
 $("closer").onclick = () => plane.zoom(1.25);
 $("farther").onclick = () => plane.zoom(0.8);
 $("fit").onclick = () => plane.fit(model?.bodies.length ? model.bounds() : { low: [-2, -1.25], high: [2, 1.25] });
@@ -220,7 +221,7 @@ function showSelection() {
   for (const id of [...doc.selection]) if (!known.has(id)) doc.selection.delete(id);
   plane.lit = new Set(doc.selection);
   for (const face of parts.filter(({ id, kind }) => kind === "face" && doc.selection.has(id))) for (const { id, index } of parts) if (face.members.includes(index)) plane.lit.add(id);
-  $("delete").disabled = $("duplicate").disabled = doc.selection.size === 0 || !ready();
+  $("delete").disabled = $("duplicate").disabled = $("stand").disabled = doc.selection.size === 0 || !ready();
   showParts($("parts"), parts, { value: doc.scene.value, selection: doc.selection, wrong: plane.wrong, pick: act.pick });
   inspector.show();
   plane.render();

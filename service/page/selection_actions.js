@@ -3,7 +3,8 @@ import { duplicated, movedBy, groundOf, renamed, tidy, turnedTo, withoutParts } 
 import { bodyPart } from "./plane_drawing.js";
 import { partsOf } from "./scene_parts.js";
 import { pointerTo } from "./scene_text.js";
-import { gridStep } from "./snapping.js";
+import { standing } from "./building.js";
+import { gridStep, setDown } from "./snapping.js";
 
 const NAME = /^[A-Za-z][\w-]*$/;
 
@@ -72,6 +73,19 @@ export function selectionActions({ doc, board, say, start, selected }) {
     /** Up or down, in space. */
     lift(height) {
       if (board.space) this.shift([0, 0, height]);
+    },
+    /** Onto the nearest face that it does not touch yet. */
+    stand() {
+      const [name] = bodies();
+      if (!name || !board.ready() || board.space) return say("Select a body of the plane first.");
+      start();
+      const body = board.model.byName[name], landed = setDown(board.model, doc.scene.value, doc.waiting, body, body.at, board.px);
+      if (!landed) return say("There is no face that it could stand on.");
+      let scene = doc.scene.with(pointerTo("bodies", name, "at"), landed.at.map((x) => Number(x.toPrecision(15))));
+      if (landed.turned) scene = turnedTo(scene, name, tidy((landed.angle * 180) / Math.PI), board.model);
+      board.held = [name];
+      doc.change(`${name} set down`, { scene: standing(scene, name, landed.on), waiting: doc.waiting.filter((on) => on !== landed.on), how: "build" });
+      return say(`${name} stands at ${landed.at.map((x) => Number(x.toPrecision(4))).join(", ")}.`);
     },
     turn(by) {
       const which = bodies().filter((name) => board.model.byName[name]?.rigid);

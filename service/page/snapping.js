@@ -1,6 +1,6 @@
 // Where a thing lands that is let go near something: at places, on faces, on a grid of round numbers.
 import { outlineOf, touchingPoints } from "./outlines.js";
-import { facesOf } from "./scene_parts.js";
+import { bodyOf, facePart, facesOf } from "./scene_parts.js";
 import { add, dot, norm, sub, turned } from "./vectors.js";
 
 const NEAR = 12, GRID = 9;
@@ -63,12 +63,9 @@ function faces(model, value, waiting, name) {
   return [...edges, ...ground];
 }
 
-/**
- * A body moved so that it stands on a face that is near: `{at, angle, on}`, or null. What has corners is turned so that its lower
- * side lies on the face; a rod touches with an end.
- */
-export function ontoFace(model, value, waiting, body, at, px) {
-  const outline = outlineOf(body, model.numbers);
+/** Every face over or under a body, with the body moved onto it along its normal: `{at, angle, on, turned, gap, depth}`. */
+function landings(model, value, waiting, body, at) {
+  const outline = outlineOf(body, model.numbers), found = [];
   for (const { on, ends } of faces(model, value, waiting, body.name)) {
     const { point, along, normal, radius, curvature, curve } = model.face(on);
     if (radius !== null || curvature !== null || curve) continue;
@@ -78,7 +75,20 @@ export function ontoFace(model, value, waiting, body, at, px) {
     const rim = outline?.radius ?? 0;
     const lowest = Math.min(...touchingPoints(outline).map((p) => dot(turned(angle, p), normal))) - rim;
     const gap = dot(sub(at, point), normal) + lowest;
-    if (Math.abs(gap) < NEAR * px || (gap < 0 && gap > 2 * lowest)) return { at: add(at, normal, -gap), angle, on, turned: Math.abs(angle - body.angle) > 1e-12 };
+    found.push({ at: add(at, normal, -gap), angle, on, turned: Math.abs(angle - body.angle) > 1e-12, gap, depth: 2 * lowest });
   }
-  return null;
+  return found;
+}
+
+/**
+ * A body moved so that it stands on a face that is near: `{at, angle, on}`, or null. What has corners is turned so that its lower
+ * side lies on the face; a rod touches with an end.
+ */
+export const ontoFace = (model, value, waiting, body, at, px) => landings(model, value, waiting, body, at).find(({ gap, depth }) => Math.abs(gap) < NEAR * px || (gap < 0 && gap > depth)) ?? null;
+
+/** The same for the nearest face on whose free side it is, however far, unless it lies there and has a contact for it. */
+export function setDown(model, value, waiting, body, at, px) {
+  const met = new Set((value.connections || []).filter((c) => c.kind === "contact" && c.on && bodyOf(c.place, value.bodies) === body.name).map((c) => facePart(c.on)));
+  const apart = landings(model, value, waiting, body, at).filter(({ gap, on }) => gap > (met.has(facePart(on)) ? 1e-3 : -1e-3) * px);
+  return apart.sort((p, q) => p.gap - q.gap)[0] ?? null;
 }

@@ -70,7 +70,9 @@ class Builder:
         boxes = self.page.locator("#connect select")
         for box, place in zip(boxes.all(), places, strict=True):
             box.focus()
-            self.page.keyboard.type(place)
+            # Letters go on from what is chosen to the next that begins with them.
+            if box.input_value() != place:
+                self.page.keyboard.type(place)
         self.page.keyboard.press("Enter")
         if self.page.locator("#connect").is_visible():
             self.page.locator("#connect button.play").press("Enter")
