@@ -16,11 +16,11 @@ from tests.core.multibody.table.test_contact_geometry import kinds
 from tests.core.multibody.worked_examples import column, read
 
 
-def pendulum(wall: Any) -> dict[str, Any]:
-    """Return a pendulum of 1 m, released level at rest, that turns back level on the other side."""
+def pendulum(wall: Any, at: tuple[Any, Any] = (1, 0)) -> dict[str, Any]:
+    """Return a pendulum of 1 m, released at rest, that turns back as high on the other side; level unless told."""
     return {
         "gravity": [0, -9.81],
-        "bodies": {"bob": {"mass": 1, "at": [1, 0]}},
+        "bodies": {"bob": {"mass": 1, "at": list(at)}},
         "connections": [
             {"kind": "rod", "name": "rod", "a": "bob", "b": [0, 0]},
             {"kind": "contact", "name": "wall", "place": "bob", "on": {"at": [wall, 0], "slope": {"degrees": -90}}},
@@ -28,17 +28,28 @@ def pendulum(wall: Any) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("wall", [-1, "-1 - 1e-32"])
-def test_a_wall_at_the_turning_point_is_undecided(wall: Any) -> None:
-    answer = solve_scene(read(pendulum(wall)), [1.0, 2.0])
+@pytest.mark.parametrize(
+    ("at", "wall", "modulus", "order"),
+    [((0.6, -0.8), -0.6, "0.1", 2), ((0.6, -0.8), "-0.6 - 1e-32", "0.1", 2), ((1, 0), "-1 - 1e-32", "0.5", 4)],
+)
+def test_a_wall_at_the_turning_point_is_undecided(at: Any, wall: Any, modulus: str, order: int) -> None:
+    """Half a period from the angle theta is 2 K(sin^2(theta/2)) sqrt(l/g); 2 sin^2(theta/2) = 1 - cos(theta)."""
+    answer = solve_scene(read(pendulum(wall, at)), [1.0, 2.0])
     assert answer.problem is not None
     assert answer.problem.code == "grazing-contact"
     assert [set(one) for one in answer.problem.candidates] == [{"wall"}, {"wall"}]
-    half = 2 * ellipk(mpf(1) / 2) / sqrt(mpf("9.81"))
-    # The gap leaves zero as the fourth power of time: when it is lowest is known that much less.
-    assert abs(answer.events[0].time - half) <= answer.events[0].error < 1e-6
+    half = 2 * ellipk(mpf(modulus)) / sqrt(mpf("9.81"))
+    # The gap leaves zero as that power of time: the higher it is, the less is known when it is lowest.
+    assert abs(answer.events[0].time - half) <= answer.events[0].error < 10 ** (-24 / order)
     assert answer.trajectory is not None
     assert answer.trajectory.rows.tolist() == [0]
+
+
+def test_a_wall_at_the_end_of_the_circle_is_passed() -> None:
+    """The gap 1 + cos(theta) is nowhere less than zero, and a touch at rest changes nothing."""
+    answer = solve_scene(read(pendulum(-1)), [2.0])
+    assert answer.problem is None
+    assert kinds(answer) == []
 
 
 def test_a_wall_that_is_clearly_missed_by_little_is_missed() -> None:
