@@ -79,7 +79,7 @@ const LINKS = {
 
 function string(d, model, c) {
   const { parts, arcs } = model.stringOf(c), slack = model.isSlack(c);
-  const lanes = parts.map((part, i) => parts.slice(0, i).filter((other) => same(part, other)).length);
+  const lanes = parts.map((part, i) => parts.slice(0, i).filter((other) => overlap(part, other)).length);
   parts.forEach((part, i) => {
     // Parts that run side by side, as in a tackle, are drawn beside each other.
     const aside = lanes[i] ? scaled(quarter(unit(sub(part[1], part[0]))), 7 * lanes[i] * d.px) : [0, 0];
@@ -96,7 +96,13 @@ function string(d, model, c) {
   for (const peg of c.through.slice(1, -1)) if (typeof peg !== "string") d.dot(model.place(peg).point, 5, "panel", "soft", 2.5);
 }
 
-const same = ([a, b], [p, q]) => (norm(sub(a, p)) + norm(sub(b, q)) < 1e-9 * (1 + norm(a))) || (norm(sub(a, q)) + norm(sub(b, p)) < 1e-9 * (1 + norm(a)));
+/** Whether two straight parts share more than a point. */
+function overlap([a, b], [p, q]) {
+  const along = unit(sub(b, a)), near = 1e-9 * (norm(sub(b, a)) + norm(sub(q, p)));
+  if ([p, q].some((point) => Math.abs(dot(quarter(along), sub(point, a))) > near)) return false;
+  const [from, to] = [dot(sub(p, a), along), dot(sub(q, a), along)].sort((x, y) => x - y);
+  return Math.min(to, norm(sub(b, a))) - Math.max(from, 0) > near;
+}
 
 /** A slack part hangs through. */
 function sagging([a, b], d) {
@@ -150,7 +156,15 @@ export function drawJoint(d, model, c) {
   }
   if (c.kind === "slider") {
     const { tangent, normal } = model.touching(c), point = at(c.a), box = ([x, y]) => add(add(point, tangent, x * d.px), normal, y * d.px);
+    // The block between guides that rub has its size.
+    const [half, wide] = [model.numbers.number(c.length ?? 0) / 2 / d.px, model.numbers.number(c.width ?? 0) / 2 / d.px];
+    if (half > 0 && wide > 0) d.outline([[-half, -wide], [half, -wide], [half, wide], [-half, wide]].map(box), "face", "ink", 1.5, { fillAlpha: 0.4 });
     return d.outline([[-13, -7], [13, -7], [13, 7], [-13, 7]].map(box), null, "soft", 2);
+  }
+  if (c.kind === "contact" && Array.isArray(c.place) && c.on) {
+    // A point of the ground that holds a body up is the top of a support.
+    const { tangent, normal } = model.touching(c), point = at(c.place), corner = (side) => add(add(point, normal, 26 * d.px), tangent, side * 14 * d.px);
+    return d.outline([point, corner(-1), corner(1)], "line", "soft", 1.5);
   }
   if (c.kind === "force") return;
   for (const reference of [c.a, c.b, ...(c.through ? [c.through[0], c.through.at(-1)] : [])]) {

@@ -290,7 +290,8 @@ export class SceneModel {
     for (const body of this.bodies) {
       const solid = body.moments && body.mass ? Math.sqrt((3 * Math.max(...body.moments)) / body.mass) : 0;
       const outline = this.space ? null : outlineOf(body, this.numbers);
-      const reach = Math.max(body.radius || 0, solid, ...(outline?.corners ?? outline?.bar ?? []).map(norm), ...Object.values(body.places).map((p) => norm(p)), 0);
+      const semiAxes = this.numbers.vector(body.shape?.semi_axes) || [];
+      const reach = Math.max(body.radius || 0, solid, ...semiAxes, ...(outline?.corners ?? outline?.bar ?? []).map(norm), ...Object.values(body.places).map((p) => norm(p)), 0);
       const path = this.column(`${body.name}.position`) || [body.start];
       for (let i = 0; i < path.length; i += Math.max(1, Math.floor(path.length / 100))) {
         points.push(path[i].map((x) => x - reach), path[i].map((x) => x + reach));

@@ -5,7 +5,20 @@ import { Arrow, Curve, View, material } from "./view3d.js";
 import { BoxGeometry, CylinderGeometry, DoubleSide, Group, Mesh, SphereGeometry, TorusGeometry, Vector3 } from "./vendor/three.js";
 import { norm } from "./vectors.js";
 
-const UP = new Vector3(0, 1, 0);
+const UP = new Vector3(0, 1, 0), AXIS = new Vector3(0, 0, 1), THIN = 0.04;
+/** Along a cylinder as it is made; the axis of what is round in a description; the drawn thickness of a disc, in its radii. */
+
+/** What is drawn of a shape that is no ball, in the axes of its body. */
+const SHAPES = {
+  disc: (view, { shape }) => view.drum(view.lengthOf(shape.radius), THIN * view.lengthOf(shape.radius)),
+  cylinder: (view, { shape }) => view.drum(view.lengthOf(shape.radius), view.lengthOf(shape.height)),
+  ellipsoid(view, { shape }) {
+    const semiAxes = shape.semi_axes.map((x) => view.lengthOf(x)), parts = view.ball(1), whole = new Group();
+    whole.add(...parts);
+    whole.scale.set(...semiAxes);
+    return [whole];
+  },
+};
 
 export class SpaceView extends View {
   constructor(frame) {
@@ -62,7 +75,9 @@ export class SpaceView extends View {
   bodyPart(body) {
     const group = new Group();
     const heaviest = Math.max(...this.model.bodies.map((b) => b.mass)) || 1;
-    if (body.radius) group.add(...this.ball(body.radius * this.factor));
+    const described = SHAPES[body.shape?.kind]?.(this, body);
+    if (described) group.add(...described);
+    else if (body.radius) group.add(...this.ball(body.radius * this.factor));
     else if (body.moments && body.mass) group.add(this.solid(body));
     else group.add(new Mesh(new SphereGeometry(0.05 * Math.cbrt((body.mass || heaviest) / heaviest), 20, 14), this.paints.deep));
     const top = body.moments && this.isTop(body, symmetryAxis(body.moments));
@@ -78,6 +93,23 @@ export class SpaceView extends View {
       group.position.set(...this.place(now.at));
       group.quaternion.set(x, y, z, w);
     });
+  }
+
+  /** A length of the description in the picture. */
+  lengthOf(length) {
+    return (this.model.numbers.number(length) || 0) * this.factor;
+  }
+
+  /** A drum about the third axis, with a spoke on each end, so that its turning is seen. */
+  drum(radius, height) {
+    const { face, faceTwo } = this.paints, body = new Mesh(new CylinderGeometry(radius, radius, height, 60), [face, faceTwo, faceTwo]), spoke = this.stick("ink", 0.02 * radius);
+    body.quaternion.setFromUnitVectors(UP, AXIS);
+    const spokes = [1, -1].map((side) => {
+      const one = side > 0 ? spoke : spoke.clone();
+      stretch(one, new Vector3(0, 0, (side * height) / 2), new Vector3(radius, 0, (side * height) / 2));
+      return one;
+    });
+    return [body, ...spokes];
   }
 
   /** A ball with two seams, so that its turning is seen. */
