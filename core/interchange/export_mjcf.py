@@ -346,6 +346,8 @@ class _Writing:
             geoms.append(self.geometries.add(None, at, axes_from(normal), type="plane", size="0 0 1"))
         rubs: Any = one.friction
         sliding = rubs[-1] if isinstance(rubs, (list, tuple)) else rubs
+        if isinstance(rubs, (list, tuple)) and rubs[0] != sliding:
+            self.leave_out((*path, "friction", 0), name, "MuJoCo has one coefficient, of sticking and of sliding")
         friction = 0.0 if sliding is None else self.numbers.number(sliding, (*path, "friction"))
         pair = {"condim": "3" if friction else "1", "friction": numbers_of([friction, friction, 0.0, 0.0, 0.0])}
         pair["margin"] = MARGIN

@@ -24,6 +24,10 @@ PERPENDICULAR = 1e-9
 """Cosine up to which two axes of a file, which have some ten digits, are at right angles."""
 
 
+ONE_POINT = 1e-9
+"""Distance up to which two places of a file, which has some ten digits of metres, are one (m)."""
+
+
 class Keyframe(Protocol):
     """Numbers of the joints in the order of the tree, None without a keyframe."""
 
@@ -164,7 +168,9 @@ def _together(
             return "cylindrical", axes[:1], place
         case "slide hinge" if abs(float(axes[0] @ axes[1])) < PERPENDICULAR:
             return "hinge-on-line", axes, place
-        case "hinge hinge" if abs(float(axes[0] @ axes[1])) < PERPENDICULAR and np.allclose(joints[0].at, place):
+        case "hinge hinge" if (
+            abs(float(axes[0] @ axes[1])) < PERPENDICULAR and np.linalg.norm(joints[0].at - place) < ONE_POINT
+        ):
             return "universal", axes, place
     return None
 

@@ -60,7 +60,8 @@ class PlaneSceneWriting(SceneWriting):
             case "planar":
                 return []
             case "planar-particle":
-                return self.without_turn(joint)
+                self.turnless.append(joint)
+                return []
             case "hinge-on-line":
                 x, y = self.direction(joint.axes[0], parent)
                 slope = {"degrees": 90} if x == 0.0 else float(np.arctan2(y, x))

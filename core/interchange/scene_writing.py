@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,11 @@ from core.multibody.language.written import GROUND
 
 DIGITS = 15
 """Significant digits of numbers that were turned or added in doubles: what these know."""
+
+
+def _of_directions(one: Mapping[str, Any]) -> bool:
+    """Return whether a connection needs the directions of the bodies that it names."""
+    return one["kind"] in ("weld", "torsion-spring") or one.get("measure") == "turn"
 
 
 def clean(values: Floats, size: float | None = None) -> list[float]:
@@ -38,6 +44,7 @@ class SceneWriting:
         self.names: dict[str, str] = {}
         self.taken = {GROUND}
         self.bodies: dict[str, dict[str, Any]] = {}
+        self.turnless: list[DraftJoint] = []
         self.size = max((float(np.abs(body.frame.origin).max()) for body in draft.bodies.values()), default=0.0)
 
     def scene(self) -> dict[str, Any]:
@@ -59,12 +66,15 @@ class SceneWriting:
                 connections += self.joint(joint)
         connections += [self.connection(one) for one in self.draft.connections]
         connections += [self.contact(*one) for one in self.draft.contacts]
+        whole = [end for one in connections if _of_directions(one) for end in (one["a"], one["b"])]
+        for joint in self.turnless:
+            self.without_turn(joint, whole)
         scene = {"gravity": self.vector(self.draft.gravity, 0.0), "bodies": self.bodies}
         return scene | ({"connections": connections} if connections else {})
 
     def named(self, given: str, kind: str) -> str:
         """Return a name that a scene may have, and that nothing else has."""
-        plain = re.sub("[^A-Za-z0-9_-]", "-", given)[: LONGEST_NAME - 5].strip("-")
+        plain = re.sub("[^A-Za-z0-9_-]+", "-", given)[: LONGEST_NAME - 5].strip("-")
         plain = plain if re.match("[A-Za-z]", plain) else f"{kind}-{plain}".strip("-")
         found, k = plain, 2
         while found in self.taken:
@@ -188,20 +198,23 @@ class SceneWriting:
                 on["place"] = self.names[joint.child]
                 across = self.direction(joint.axes[0], parent)
                 track = {"kind": "track", **on, "on": {"at": self.bodies[on["place"]]["at"], "normal": across}}
-                return [track, *self.without_turn(joint)]
-        return self.without_turn(joint)
+                self.turnless.append(joint)
+                return [track]
+        self.turnless.append(joint)
+        return []
 
-    def without_turn(self, joint: DraftJoint) -> list[dict[str, Any]]:
-        """Write a body that does not turn as a particle."""
-        body = self.bodies[self.names[joint.child]]
-        if "places" in body or any(other.parent == joint.child for other in self.draft.joints):
+    def without_turn(self, joint: DraftJoint, whole: Collection[object]) -> None:
+        """Make a body that does not turn a particle, once all is known that is at its places or of its direction."""
+        name = self.names[joint.child]
+        body = self.bodies[name]
+        carries = any(other.parent == joint.child for other in self.draft.joints)
+        if carries or name in whole or "places" in body or "shape" in body:
             self.draft.left_out.append(
                 LeftOut(joint.line, joint.name, "nothing holds its direction here: it may turn", changes_motion=True)
             )
-            return []
-        for field in ("moments", "tensor", "inertia", "axes", "angle", "angular_velocity", "shape"):
+            return
+        for field in ("moments", "tensor", "inertia", "axes", "angle", "angular_velocity"):
             body.pop(field, None)
-        return []
 
     def torsion(self, joint: DraftJoint) -> list[dict[str, Any]]:
         """Return the spring of the turn of a hinge, which is zero at the start."""

@@ -9,7 +9,7 @@ import numpy as np
 from core.interchange.draft import Draft, DraftBody, DraftJoint, JointKind
 from core.interchange.frames import Frame, at, roll_pitch_yaw, vector
 from core.interchange.urdf import inertia_tensor
-from core.interchange.xml_reading import Element, fault, numbers_in, shortened
+from core.interchange.xml_reading import Element, by_name, fault, numbers_in, shortened
 
 GRAVITY = (0.0, 0.0, -9.8)
 """Gravity of a world that states none (m/s^2), as SDF has it."""
@@ -48,8 +48,9 @@ def read_sdf(root: Element) -> Draft:
     for child in carrier.children:
         if child.name not in ("model", "gravity", *WITHOUT_MOTION):
             draft.leave_out(child, "only models and gravity are read of a world")
-    for model in models:
-        _Model(model, draft, f"{model.get('name')}-" if len(models) > 1 else "")
+    for name, model in by_name(models).items() if len(models) > 1 else [("", models[0])]:
+        # SDF has :: between the names of a model and of what is in it, and in no name.
+        _Model(model, draft, f"{name}::" if name else "")
     return draft
 
 
@@ -60,14 +61,21 @@ class _Model:
         self.draft, self.prefix = draft, prefix
         self.frames = {"__model__": self.pose(model, at((0.0, 0.0, 0.0)))}
         static = _said(model, "static") == "true"
-        for link in model.all("link"):
+        for name, link in by_name(model.all("link")).items():
+            if name in ("world", "__model__"):
+                raise fault(link, "must have a name that SDF does not keep for itself")
             frame = self.pose(link, self.frames["__model__"])
-            self.frames[link.required("name")] = frame
+            self.frames[name] = frame
             if not static:
                 body = self.body(link, frame)
+                if body.name in draft.bodies:
+                    raise fault(link, f"must have a name of its own in the world, unlike {shortened(body.name)}")
                 draft.bodies[body.name] = body
-        for joint in model.all("joint"):
+        # The joints of what is the ground hold nothing that moves.
+        for joint in () if static else by_name(model.all("joint")).values():
             self.joint(joint)
+        if model.get("placement_frame"):
+            draft.leave_out(model, "its pose is taken as that of the model, not of its placement_frame")
         for child in model.children:
             if child.name not in ("link", "joint", *WITHOUT_MOTION):
                 draft.leave_out(child, "only links and joints are read of a model")

@@ -9,7 +9,7 @@ import numpy as np
 from core.arrays import Floats
 from core.interchange.draft import Draft, DraftBody, DraftJoint, JointKind
 from core.interchange.frames import Frame, at, roll_pitch_yaw, vector
-from core.interchange.xml_reading import Element, fault, shortened
+from core.interchange.xml_reading import Element, by_name, fault, shortened
 
 GRAVITY = (0.0, 0.0, -9.81)
 """URDF has no gravity; its z axis points up."""
@@ -30,13 +30,16 @@ def read_urdf(root: Element) -> Draft:
     A link "world" is the ground, and so is a first link without mass; another first link is free.
     """
     draft = Draft(vector(GRAVITY))
-    links = {link.required("name"): link for link in root.all("link")}
-    if len(links) < len(list(root.all("link"))):
-        raise fault(root, "must have a name of its own for each link")
-    parents = {_end(joint, "child", links): joint for joint in root.all("joint")}
-    for child in root.children:
-        if child.name not in ("link", "joint"):
-            draft.leave_out(child, "it is no link or joint", changes_motion=child.name not in IGNORED)
+    links = by_name(root.all("link"))
+    parents: dict[str, Element] = {}
+    for joint in by_name(root.all("joint")).values():
+        child = _end(joint, "child", links)
+        if child in parents:
+            raise fault(joint, f"must be the only joint of which {shortened(child)} is the child")
+        parents[child] = joint
+    for other in root.children:
+        if other.name not in ("link", "joint"):
+            draft.leave_out(other, "it is no link or joint", changes_motion=other.name not in IGNORED)
     frames: dict[str, Frame] = {}
     for name in links:
         _place(name, links, parents, frames)

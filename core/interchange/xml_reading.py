@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NoReturn
 from xml.parsers import expat
@@ -91,11 +91,27 @@ def numbers_in(element: Element, text: str, what: str, count: int | None) -> tup
     if count is not None and len(words) != count:
         raise fault(element, f"must have {count} numbers in {what}, not {len(words)}")
     try:
+        # Python reads _ between digits and digits of other scripts, which files do not have.
+        if "_" in text or not text.isascii():
+            raise ValueError(text)
         found = tuple(float(word) for word in words)
     except ValueError:
         raise fault(element, f"must have numbers in {what}, not {shortened(text)}") from None
     if not all(abs(x) <= LARGEST for x in found):
         raise fault(element, f"must have finite numbers up to {LARGEST:g} in {what}")
+    return found
+
+
+def by_name(elements: Iterable[Element]) -> dict[str, Element]:
+    """Return elements by their names, of which each must have one of its own."""
+    found: dict[str, Element] = {}
+    for element in elements:
+        if element.required("name") in found:
+            raise fault(
+                element,
+                f"must have a name of its own: <{element.name}> of line {found[element.get('name')].line} has it",
+            )
+        found[element.get("name")] = element
     return found
 
 

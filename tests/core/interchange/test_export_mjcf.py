@@ -110,6 +110,20 @@ def test_what_has_no_element_is_left_out_with_its_pointer() -> None:
     ]
 
 
+def test_a_coefficient_of_sticking_beside_that_of_sliding_is_left_out() -> None:
+    for friction, said in (([0.9, 0.2], True), ([0.2, 0.2], False), (0.2, False)):
+        scene = {
+            "gravity": [0, 0, -9.81],
+            "bodies": {"ball": {"mass": 1, "at": [0, 0, 0.1], "shape": {"kind": "ball", "radius": 0.1}}},
+            "connections": [
+                {"kind": "contact", "place": "ball", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}, "friction": friction}
+            ],
+        }
+        text, left_out = export_mjcf(scene_from(scene))
+        assert 'friction="0.2 0.2 0 0 0"' in text
+        assert ("/connections/0/friction/0" in [one.at for one in left_out]) is said
+
+
 def test_names_and_numbers_are_those_of_the_scene() -> None:
     text, _ = exported("double-pendulum")
     assert '<body name="two" pos="' in text

@@ -92,6 +92,40 @@ def test_two_hinges_through_one_point_are_a_universal_joint_and_a_slide_with_a_h
     assert kinds('<joint type="slide"/><joint type="slide" axis="0 1 0"/><joint type="ball"/>') == ["track"]
 
 
+def test_hinges_a_little_apart_are_two() -> None:
+    """A distance of 1e-7 m is not a point, at the origin as 50 m from it."""
+    for far in (0, 50):
+        joints = f'<joint axis="1 0 0" pos="{far} 0 0"/><joint axis="0 1 0" pos="{far} 1e-7 1e-7"/>'
+        body = f'<body name="b">{joints}<inertial pos="0 0 -1" mass="1" diaginertia="1 1 1"/></body>'
+        with pytest.raises(InvalidParameter, match=r"line 1: <body> .* unlike hinge hinge"):
+            import_model(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
+
+
+SLIDES = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
+
+
+def test_a_body_of_slides_is_a_particle_unless_something_is_off_its_centre() -> None:
+    """Ends of a tendon at its centre leave it a particle; one beside the centre makes it a body that may turn."""
+    for place, particle in (("0 0 0", True), ("0.1 0 0", False)):
+        text = f"""<mujoco><worldbody><site name="s" pos="0 0 2"/>
+<body name="b">{SLIDES}<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/><site name="t" pos="{place}"/></body>
+</worldbody><tendon><spatial stiffness="10"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
+        found = import_model(text)
+        assert ("moments" not in found.scene["bodies"]["b"]) is particle
+        assert [(one.at, one.why) for one in found.left_out] == (
+            [] if particle else [(2, "nothing holds its direction here: it may turn")]
+        )
+
+
+def test_a_body_of_slides_that_touches_keeps_its_shape() -> None:
+    text = f"""<mujoco><worldbody><geom type="plane" size="1 1 1"/>
+<body name="b" pos="0 0 0.3">{SLIDES}<geom size="0.3"/></body></worldbody></mujoco>"""
+    found, rates = imported(text)
+    assert found.scene["bodies"]["b"]["shape"] == {"kind": "ball", "radius": 0.3}
+    assert [one.at for one in found.left_out] == [2]
+    assert rates["b"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
+
+
 def test_a_ball_above_a_plane_touches_it_and_others_are_left_out() -> None:
     """It rests; a contact between two bodies is said to be left out."""
     text = """<mujoco><worldbody><geom type="plane" size="1 1 1" friction="0.4"/>

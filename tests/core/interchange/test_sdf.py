@@ -51,10 +51,17 @@ def test_axes_may_be_expressed_in_the_model() -> None:
 def test_models_of_a_world_are_told_apart_and_static_ones_are_the_ground() -> None:
     stone = LINK.replace("arm", "stone")
     text = f"""<sdf version="1.9"><world name="w"><gravity>0 0 -3</gravity><model name="a">{LINK}{HINGE}</model>
-<model name="b">{stone}</model><model name="c"><static>true</static>{LINK}</model></world></sdf>"""
+<model name="b">{stone}</model><model name="c"><static>true</static>{LINK}{HINGE}</model></world></sdf>"""
     found, accelerations = imported(text)
     assert sorted(found.scene["bodies"]) == ["a-arm", "b-stone"]
     assert accelerations["b-stone"] == pytest.approx((0.0, 0.0, -3.0), abs=1e-15)
+
+
+def test_links_of_models_whose_names_join_alike_are_two_bodies() -> None:
+    first, second = LINK.replace("arm", "b-c"), LINK.replace("arm", "c")
+    text = f"""<sdf version="1.9"><world name="w"><model name="a">{first}</model><model name="a-b">{second}</model>
+</world></sdf>"""
+    assert list(import_model(text).scene["bodies"]) == ["a-b-c", "a-b-c-2"]
 
 
 def test_what_is_left_out_is_said_line_by_line() -> None:
@@ -70,9 +77,17 @@ def test_what_is_left_out_is_said_line_by_line() -> None:
         (model(HINGE.replace("<child>arm", "<child>leg")), "a link of the model as its child"),
         (model(HINGE.replace("<xyz>1 0 0", "<xyz>0 0 0")), "axes other than zero"),
         (model(HINGE.replace("<xyz>1 0 0", "<xyz>1 0")), "3 numbers in xyz"),
-        (model(HINGE + HINGE), "the only joint"),
+        (model(HINGE + HINGE), '<joint> "j" must have a name of its own'),
+        (model(HINGE + HINGE.replace('"j"', '"k"')), 'line 5: <joint> "k" must be the only joint'),
         (model(HINGE, LINK.replace("<pose>0 0 1", '<pose relative_to="leg">0 0 1')), "relative to the model"),
         ('<sdf version="1.9"/>', "must have a <model>"),
+        (model(HINGE, f"{LINK}\n{LINK}"), 'line 4: <link> "arm" must have a name of its own: <link> of line 2 has it'),
+        (model(HINGE, LINK.replace("arm", "world")), "a name that SDF does not keep"),
+        (
+            f"""<sdf version="1.9"><world name="w"><model name="m">{LINK}</model>
+<model name="m">{LINK}</model></world></sdf>""",
+            'line 3: <model> "m" must have a name of its own',
+        ),
     ],
 )
 def test_what_is_no_model_is_refused_at_its_line(text: str, says: str) -> None:

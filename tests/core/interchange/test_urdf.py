@@ -84,8 +84,14 @@ def test_what_is_left_out_is_said_line_by_line() -> None:
         (robot(INERTIAL).replace('axis xyz="1 0 0"', 'axis xyz="0 0 0"'), "line 5"),
         (robot("<inertial><mass/></inertial>"), "line 3: <mass> must have the attribute value"),
         (robot(""), 'line 3: "arm" moves and has no mass'),
-        (robot(INERTIAL, more='<link name="arm"/>'), "a name of its own"),
+        (robot(INERTIAL, more='\n<link name="arm"/>'), '<link> "arm" must have a name of its own'),
         ("<robot/>", "have a body that moves"),
+        (
+            f"""<robot><link name="a">{INERTIAL}</link><link name="b">{INERTIAL}</link><link name="c">{INERTIAL}</link>
+<joint name="1" type="fixed"><parent link="a"/><child link="c"/></joint>
+<joint name="2" type="continuous"><parent link="b"/><child link="c"/></joint></robot>""",
+            'line 6: <joint> "2" must be the only joint of which "c" is the child',
+        ),
         (
             f"""<robot><link name="a">{INERTIAL}</link><link name="b">{INERTIAL}</link>
 <joint name="1" type="fixed"><parent link="a"/><child link="b"/></joint>

@@ -50,7 +50,14 @@ def test_what_is_no_document_or_too_large_is_refused_at_its_place(text: str, say
 
 @pytest.mark.parametrize(
     ("numbers", "says"),
-    [("1 2", "3 numbers in x, not 2"), ("1 2 k", "numbers in x"), ("1 2 nan", "finite"), ("1 2 1e101", "up to 1e+100")],
+    [
+        ("1 2", "3 numbers in x, not 2"),
+        ("1 2 k", "numbers in x"),
+        ("1 2 nan", "finite"),
+        ("1 2 1_0", "numbers in x"),
+        ("1 2 ٣", "numbers in x"),
+        ("1 2 1e101", "up to 1e+100"),
+    ],
 )
 def test_numbers_that_are_none_are_refused_with_the_line(numbers: str, says: str) -> None:
     element = read_xml(f'<a>\n<b name="n" x="{numbers}"/></a>').children[0]
