@@ -32,6 +32,8 @@ _UNIT = re.compile(r"[\w°%µμΩ·*/^()²³⁻¹. -]*")
 _PRODUCT = str.maketrans({"⋅": "·", "×": "·"})
 _TWO_SIGNS = re.compile(r"[-+]{2}|(?:\+\s+-|-\s+\+)\s*[\d.,]")
 """Two signs together: ``2.5 +- 0.3`` and ``2.5 + - 0.3`` are no differences, and ``--2`` nothing that anybody means."""
+_JOINED = re.compile(rf"(?:(?!{_FUNCTION})(?:1\s*/\s*)?[A-Za-zµμΩ%°](?:[^-+]|\^\s*[-+])*?(?:\s+|(?<=°)))?[-+]\s*(.+)")
+"""Behind a number, perhaps behind its unit: a sign and what it joins to the number."""
 _UNCLEAR_QUOTIENT = re.compile(rf"/\s*{DIGITS}(?={_FUNCTION}|√)")
 """``1/2π`` may be π/2 or the reciprocal of 2π; ``1/2 π`` is half of π."""
 _SEPARATOR = re.compile(r"[;|]|,\s")
@@ -94,6 +96,8 @@ def typed_entry(text: str, locale: Locale | None = None) -> TypedEntry:
     number = leading_number(entry, locale)
     if number is not None:
         value, rest = number
+        if _joins_a_number(rest, entry, locale):
+            raise _two_numbers(entry)
         if not _GOES_ON.match(rest):
             return TypedEntry(value, _symbols(rest, locale))
     if "=" in entry or _TWO_SIGNS.search(entry):
@@ -142,6 +146,25 @@ def _symbols(unit: str, locale: Locale | None) -> str | None:
     if not _UNIT.fullmatch(unit) or _SECOND_NUMBER.search(unit):
         raise _malformed()
     return in_symbols(unit, locale) or None
+
+
+def _joins_a_number(rest: str, entry: str, locale: Locale | None) -> bool:
+    """Return whether all that follows the number of an entry is a sign and one more number, with units or without.
+
+    A second sign, ``2 - -3``, makes it a difference unless both numbers are negative: ``-3 - -2`` may be a range.
+    """
+    joined = _JOINED.fullmatch(rest)
+    if joined is None or (joined[1][0] in "-+" and not entry.startswith("-")):
+        return False
+    second = leading_number(joined[1], locale)
+    return second is not None and not _GOES_ON.match(second[1])
+
+
+def _two_numbers(entry: str) -> EntryFault:
+    """Return the fault of ``6.2-6.3 s`` and ``6.28 +0.01 s``."""
+    rule = f"be one number: {entry} may be a calculation, a range, or a value with its error"
+    sentence = Sentence("number-or-range", {"entry": entry})
+    return EntryFault((), rule, remedy="write the result alone", sentence=sentence)
 
 
 def _malformed() -> EntryFault:

@@ -30,6 +30,8 @@ FRENCH: Mapping[str, str] = {
     "number-ambiguous": "{digits} peut signifier {whole} ou {decimal}. Écrivez {whole} ou {padded}.",
     "number-malformed": "Écrivez le nombre avec un seul séparateur décimal et, si vous séparez les milliers, par "
     "groupes de trois chiffres.",
+    "number-or-range": "{entry} peut être un calcul, un intervalle ou une valeur avec son incertitude. Écrivez le "
+    "résultat sous la forme d'un seul nombre.",
     "power-of-ten": "Écrivez les puissances de dix avec ^, par exemple 2*10^-3.",
     "quotient-unclear": "Mettez des parenthèses : 1/2π peut signifier 1/(2π) ou (1/2)π.",
     "list-malformed": "Écrivez une liste de nombres, par exemple [1,5; 2; 3].",

@@ -32,6 +32,8 @@ GERMAN: Mapping[str, str] = {
     "number-ambiguous": "{digits} kann {whole} oder {decimal} bedeuten. Schreiben Sie {whole} oder {padded}.",
     "number-malformed": "Schreiben Sie die Zahl mit einem Dezimalzeichen und, falls Sie Tausender trennen, in "
     "Dreiergruppen.",
+    "number-or-range": "{entry} kann eine Rechnung, ein Bereich oder ein Wert mit Unsicherheit sein. Geben Sie das "
+    "Ergebnis als eine einzige Zahl an.",
     "power-of-ten": "Schreiben Sie Zehnerpotenzen mit ^, zum Beispiel 2*10^-3.",
     "quotient-unclear": "Setzen Sie Klammern: 1/2π kann 1/(2π) oder (1/2)π bedeuten.",
     "list-malformed": "Schreiben Sie eine Liste von Zahlen, zum Beispiel [1,5; 2; 3].",

@@ -30,6 +30,8 @@ SPANISH: Mapping[str, str] = {
     "number-ambiguous": "{digits} puede significar {whole} o {decimal}. Escriba {whole} o {padded}.",
     "number-malformed": "Escriba el número con un solo separador decimal y, si separa los millares, en grupos de "
     "tres cifras.",
+    "number-or-range": "{entry} puede ser un cálculo, un intervalo o un valor con su incertidumbre. Escriba el "
+    "resultado como un solo número.",
     "power-of-ten": "Escriba las potencias de diez con ^, por ejemplo 2*10^-3.",
     "quotient-unclear": "Use paréntesis: 1/2π puede significar 1/(2π) o (1/2)π.",
     "list-malformed": "Escriba una lista de números, por ejemplo [1,5; 2; 3].",

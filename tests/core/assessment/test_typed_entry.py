@@ -67,6 +67,8 @@ from core.errors import InvalidParameter
         ("6,28.10⁻³ s", 0.00628, "s"),
         ("1 rads^-1", 1.0, "rad s^-1"),
         ("1 rads/s", 1.0, "rad/s"),
+        ("5 m s-1", 5.0, "m s-1"),
+        ("5 kg m-1 s^-2", 5.0, "kg m-1 s^-2"),
         ("[1 2.5 -3] m", [1.0, 2.5, -3.0], "m"),
         ("[5/2, 5, 13/2] m", [2.5, 5.0, 6.5], "m"),
         ("[√2; 0] m", [2**0.5, 0.0], "m"),
@@ -97,6 +99,10 @@ def test_values_with_units(text: str, value: Any, unit: str | None) -> None:
         ("(2,5)*m", "(2.5)*m", None),
         ("2,5 - -3 m", "2.5 - -3", "m"),
         ("2*-3 m", "2*-3", "m"),
+        ("2 + 3 + 4 m", "2 + 3 + 4", "m"),
+        ("1 - 2/3", "1 - 2/3", None),
+        ("2 - pi", "2 - pi", None),
+        ("2-3*m", "2-3*m", None),
         ("a + -b", "a + -b", None),
         ("2 Pi s", "2*pi", "s"),
         ("3/2 π m", "3/2*pi", "m"),
@@ -161,6 +167,19 @@ def test_a_locale_decides_what_a_comma_is(text: str, locale: Locale, value: floa
         ("2.5 - + .347 s", "en"),
         ("2.10^3", None),
         ("2·10-3 m", "de"),
+        ("6.2-6.3 s", "en"),
+        ("6,2–6,3 s", "de"),
+        ("6,28 +0,01 s", "fr"),
+        ("6,28 -0,01", "es"),
+        ("T = 6.28+0.01 s", None),
+        ("6.2 s - 6.3 s", None),
+        ("6.28 s + 0.01 s", None),
+        ("2.5 m s^-1 - 3 m s^-1", None),
+        ("35°-36°", None),
+        ("-3 - -2 m", None),
+        ("2·10²-3·10² N", None),
+        ("6.2-6.3 1/s", None),
+        ("[1-2; 3] m", None),
         ("1/2π Hz", None),
         ("1/2sin(a)", "en"),
         ("6 s 280 ms", None),
@@ -198,6 +217,15 @@ def test_the_reading_with_a_decimal_comma_has_one_where_the_comma_decides() -> N
         typed_entry("14.715 N", "de")
     assert fault.value.sentence.text("de") == "14.715 kann 14715 oder 14,715 bedeuten. Schreiben Sie 14715 oder 14,715."
     assert typed_entry("14,715 N", "de").value == 14.715
+
+
+def test_a_range_or_a_value_with_its_error_is_told_how_to_be_written() -> None:
+    with pytest.raises(EntryFault, match="6,2-6,3 s may be a calculation, a range") as fault:
+        typed_entry("T = 6,2-6,3 s", "de")
+    assert fault.value.sentence.text("en") == (
+        "6,2-6,3 s can mean a calculation, a range, or a value with its uncertainty. "
+        "Write the result as a single number."
+    )
 
 
 @pytest.mark.parametrize(
