@@ -22,6 +22,7 @@ from pydantic import ValidationError
 
 from core.near_names import nearest
 from service import VERSION
+from service.broken_pipe import ending_with_its_reader
 from service.execution import PRELOAD
 from service.http.keys import new_key
 from service.observability.logs import LOG, configure
@@ -70,21 +71,22 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the service under uvicorn until it is stopped."""
-    options = parser().parse_args(arguments)
-    if options.new_key is not None:
-        key, line = new_key(options.new_key)
-        sys.stdout.write(f"key, shown only now: {key}\nline for keys_file:  {line}\n")
-        return
-    given = {name: value for name in ("host", "port", "workers") if (value := getattr(options, name)) is not None}
-    settings, unknown = _read_settings(given), unknown_settings(os.environ)
-    misspelt = [f"{name} is no setting; did you mean {near}?" for name, near in unknown.items() if near]
-    if misspelt:
-        sys.exit("\n".join(misspelt))
-    if options.openapi:
-        from service.app import app
+    with ending_with_its_reader():
+        options = parser().parse_args(arguments)
+        if options.new_key is not None:
+            key, line = new_key(options.new_key)
+            sys.stdout.write(f"key, shown only now: {key}\nline for keys_file:  {line}\n")
+            return
+        given = {name: value for name in ("host", "port", "workers") if (value := getattr(options, name)) is not None}
+        settings, unknown = _read_settings(given), unknown_settings(os.environ)
+        misspelt = [f"{name} is no setting; did you mean {near}?" for name, near in unknown.items() if near]
+        if misspelt:
+            sys.exit("\n".join(misspelt))
+        if options.openapi:
+            from service.app import app
 
-        sys.stdout.buffer.write(orjson.dumps(app.openapi(), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
-        return
+            sys.stdout.buffer.write(orjson.dumps(app.openapi(), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+            return
     configure(settings.log_level)
     for name in unknown:
         LOG.warning("%s is no setting and has no effect; python -m service --help lists them all", name)

@@ -18,6 +18,7 @@ from urllib.error import HTTPError, URLError
 from urllib.request import Request, urlopen
 
 from service import VERSION
+from service.broken_pipe import ending_with_its_reader
 
 POLLING = 0.5
 """Time between two looks at the state of a study (s)."""
@@ -64,9 +65,10 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command."""
-    options, rest = parser().parse_known_args(arguments)
-    if rest and options.command != "serve":
-        parser().error(f"unrecognized arguments: {' '.join(rest)}")
+    with ending_with_its_reader():
+        options, rest = parser().parse_known_args(arguments)
+        if rest and options.command != "serve":
+            parser().error(f"unrecognized arguments: {' '.join(rest)}")
     options.rest = rest
     options.run(options)
 
@@ -77,6 +79,7 @@ def _service(arguments: Sequence[str]) -> None:
     run(arguments)
 
 
+@ending_with_its_reader()
 def _grade(options: argparse.Namespace) -> None:
     from core.errors import MechanicsError
     from core.systems.budget import Budget

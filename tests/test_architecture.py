@@ -56,7 +56,7 @@ SERVICE_LAYERS = (
     {"routes", "openapi"},
     {"studies"},
     {"app"},
-    {"server", "running", "__main__", "command"},
+    {"broken_pipe", "server", "running", "__main__", "command"},
 )
 """The packages and modules of the service in layers, lowest first; each imports from its own layer or a lower one."""
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 import threading
 import tomllib
 from collections.abc import Iterator
@@ -12,6 +15,7 @@ from typing import Any, ClassVar
 
 import pytest
 
+from service.broken_pipe import UNREAD
 from service.command import main
 
 ROOT = Path(__file__).parents[2]
@@ -100,6 +104,34 @@ def test_makes_a_key_and_passes_options_on(capsys: pytest.CaptureFixture[str]) -
     assert "POLHODE_PORT" in capsys.readouterr().out
     with pytest.raises(SystemExit):
         main(["openapi", "--port", "1"])
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["service.command", "--help"],
+        ["service.command", "grade", "examples/assessments/1f.json"],
+        ["service.command", "openapi"],
+        ["service", "--new-key", "laboratory"],
+    ],
+    ids=" ".join,
+)
+def test_a_command_whose_reader_has_gone_ends_without_a_word(command: list[str]) -> None:
+    read, written = os.pipe()
+    os.close(read)
+    try:
+        ended = subprocess.run(
+            [sys.executable, "-m", *command],
+            cwd=ROOT,
+            # With a buffer, as outside of tests: what is left in it is written when the interpreter ends.
+            env=os.environ | {"PYTHONUNBUFFERED": ""},
+            stdout=written,
+            stderr=subprocess.PIPE,
+            check=False,
+        )
+    finally:
+        os.close(written)
+    assert (ended.returncode, ended.stderr) == (UNREAD, b"")
 
 
 def test_a_wheel_has_the_command_and_no_package_of_examples() -> None:

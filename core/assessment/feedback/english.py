@@ -29,8 +29,8 @@ ENGLISH: Mapping[str, str] = {
     "number-ambiguous": "{digits} can mean {whole} or {decimal}. Write {whole} or {padded}.",
     "number-malformed": "Write the number with one decimal mark and, if you separate thousands, groups of three "
     "digits.",
-    "number-or-range": "{entry} can mean a calculation, a range, or a value with its uncertainty. Write the result as a "
-    "single number.",
+    "number-or-range": "{entry} can mean a calculation, a range, or a value with its uncertainty. Write the result as "
+    "a single number.",
     "power-of-ten": "Write powers of ten with ^, such as 2*10^-3.",
     "quotient-unclear": "Use parentheses: 1/2π can mean 1/(2π) or (1/2)π.",
     "list-malformed": "Write a list of numbers such as [1.5; 2; 3].",
