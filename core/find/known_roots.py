@@ -19,6 +19,9 @@ LOOKED_AT = 1e-5
 WIDER = 4.0
 """Factor by which the bracket of a root is widened until the figure is decided at its ends."""
 
+CLEARLY = 10.0
+"""How many times its error a value is at least by which a slope is known to a tenth."""
+
 STEEPER = 1.5
 """Power of the distance above which the multiplicity of a root is looked at."""
 
@@ -26,8 +29,8 @@ FARTHER = 100.0
 """How many times farther than an end of the bracket a sample is by which that power is seen."""
 
 
-class Difference:
-    """A figure less a target."""
+class RootsOfDifference:
+    """A figure less a target, whose roots are certified."""
 
     def __init__(self, curve: Curve, target: float) -> None:
         self._curve, self._target = curve, target
@@ -83,9 +86,9 @@ class Difference:
         """Return the smaller slope to either of the nearest samples that are decided; 0 without any."""
         slopes = []
         for side in (-1, 1):
-            beside = [p for p in self._curve.known if (p - x) * side > 0.0 and self._curve.number(p) is not None]
-            for p in sorted(beside, key=lambda p: abs(p - x)):
-                if abs(self.g(p)) > 10.0 * error:
+            sampled = [p for p in self._curve.known if (p - x) * side > 0.0 and self._curve.number(p) is not None]
+            for p in sorted(sampled, key=lambda p: abs(p - x)):
+                if abs(self.g(p)) > CLEARLY * error:
                     slopes.append(abs(self.g(p)) / abs(p - x))
                     break
         return min(slopes, default=0.0)

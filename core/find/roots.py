@@ -8,7 +8,7 @@ from math import inf
 
 from core.find.evaluations import Curve
 from core.find.infinite import grows
-from core.find.known_roots import Difference
+from core.find.known_roots import RootsOfDifference
 from core.find.minima import Three, UndefinedBetween, drop_to_vertex, least_of, reaches_zero
 from core.find.scanning import FINEST_BORDER, Run, interpolated, scanned
 from core.find.solutions import Family, Nearest, Solution
@@ -98,7 +98,7 @@ class _Crossed(Exception):
         self.x = x
 
 
-class _Search(Difference):
+class _Search(RootsOfDifference):
     """Looks for the roots of a figure less a target.
 
     Attributes

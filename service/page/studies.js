@@ -3,7 +3,7 @@ import { ask, fetched, get } from "./api.js";
 import { $, make, written } from "./dom.js";
 import { Histogram } from "./histogram.js";
 import { StudyMap, axisOf } from "./study_map.js";
-import { keepQuestion, openMember, showRefusals } from "./study_members.js";
+import { PAGE, keepQuestion, openMember, showRefusals } from "./study_members.js";
 
 const STUDIES = "/v1/studies";
 const LARGEST_MAP = 250000;
@@ -72,7 +72,7 @@ async function remove(state) {
 async function results(state) {
   const path = `${STUDIES}/${state.jobID}/results`;
   const drawn = state.shape.length === 2 && Math.min(...state.shape) > 1 && state.count <= LARGEST_MAP;
-  const pages = [await get(`${path}?count=${drawn ? 10000 : 1}`)];
+  const pages = [await get(`${path}?count=${drawn ? PAGE : 1}`)];
   while (drawn && pages.at(-1).next) pages.push(await get(pages.at(-1).next));
   const column = (of, name) => pages.flatMap((page) => page[of][name]);
   shown = { state, drawn, statistics: pages[0].statistics.figures, column };
@@ -140,7 +140,7 @@ $("price").addEventListener("click", () => send(async (text) => {
 }));
 $("start").addEventListener("click", () => send(async (text) => {
   const { answer } = await ask(STUDIES, text);
-  keepQuestion(answer.jobID, JSON.parse(text));
   follow(answer).catch(tell);
+  keepQuestion(answer.jobID, JSON.parse(text));
 }));
 get(STUDIES).then(({ studies }) => studies.forEach((state) => follow(state).catch(tell)), tell).finally(() => { document.body.dataset.ready = "yes"; });

@@ -3,8 +3,10 @@ import { Refusal, ask, get } from "./api.js";
 import { $, make, written } from "./dom.js";
 import { namesIn, valueAt } from "./scene_text.js";
 
-const KEPT = "polhode-study-", PAGE = 10000;
-/** Before the name of a study that this tab has started, whose state does not repeat its question; members of a page of results. */
+/** Before the name of a study that this tab has started, whose state does not repeat its question. */
+const KEPT = "polhode-study-";
+/** Members of a page of results: as many as the service gives at once. */
+export const PAGE = 10000;
 
 export const keepQuestion = (id, study) => sessionStorage.setItem(KEPT + id, JSON.stringify(study));
 

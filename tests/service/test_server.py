@@ -116,9 +116,7 @@ def test_processes_take_the_memory_that_is_promised(start_server: Callable[..., 
     server.wait_until_ready()
     pid = server.process.pid
     forking = [child for child in children(pid) if children(child)]
-    # Pages of files count less, the more other processes there are on the machine that read them: of a machine without
-    # others it is 236.
-    assert sum(megabytes(one, "Pss") for one in (pid, *forking)) < 250
+    # Pages of files are left out: how many of them count depends on what other processes read them.
     assert sum(megabytes(one, "Pss_Anon") for one in (pid, *forking)) < 215
     computing = [one for child in forking for one in children(child)]
     assert computing

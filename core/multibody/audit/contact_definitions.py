@@ -12,7 +12,7 @@ from core.multibody.audit.coefficients import touch_of
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.definition_of import definition_of
-from core.multibody.audit.level_rims import Both, level_rim
+from core.multibody.audit.level_rims import ContactOfLevelRims, level_rim
 from core.multibody.audit.outlines import ByCorners, OnOutline
 from core.multibody.audit.placement import Place, Undefined
 from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
@@ -58,7 +58,7 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
     rim = level_rim(own, face, name, reader.bodies)
     tips = [Tip(place, own.radius, own.semi_axes) for place in own.corners] if rim is None else list(rim.tips)
     found = _by_corners(name, [OnFace(name, (*tip.place.bodies, *at.bodies), touch, tip, face) for tip in tips])
-    return found if rim is None else Both(name, found.bodies, found, rim)
+    return found if rim is None else ContactOfLevelRims(name, found.bodies, found, rim)
 
 
 def _on_box(name: str, ball: Outline[Place], box: Outline[Place], touch: Touch) -> OnBox:

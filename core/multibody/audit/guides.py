@@ -18,7 +18,7 @@ from core.multibody.audit.placement import Motion, Numbers, Place, Placement
 from core.multibody.audit.surfaces import Face, Round, Tip
 from core.multibody.language.joints import GuideCurve, Slider
 
-SIDES = (1.0, -1.0)
+SIDES_OF_GUIDE = (1.0, -1.0)
 """Both sides of a line, that of its normal first; of a circle, outside and inside."""
 
 
@@ -133,7 +133,7 @@ def rubbing_slider(
     n, to_block = np.array([-t[1], t[0]]), _axes(reader, a).T @ _axes(reader, b)
     found = []
     for along in (-length / 2.0, length / 2.0) if length else (0.0,):
-        for side in SIDES:
+        for side in SIDES_OF_GUIDE:
             off = -side * width / 2.0 * n
             tip, at = _moved(a, to_block @ (along * t + off)), _moved(b, off)
             found.append(OnFace(name, (), _touch(connection, reader, name, path), Tip(tip), Face(at, _pair(side * n))))
@@ -150,10 +150,10 @@ def rubbing_track(connection: GuideCurve, reader: Reader, name: str, place: Plac
     found: list[OnFace | OnRound]
     if "radius" in on:
         radius = reader.number(on["radius"], (*where, "radius"))
-        found = [OnRound(name, (), touch, Round(place, at, (0.0, side * radius))) for side in SIDES]
+        found = [OnRound(name, (), touch, Round(place, at, (0.0, side * radius))) for side in SIDES_OF_GUIDE]
     else:
         c, s = reader.direction(on.get("slope"), (*where, "slope"))
-        found = [OnFace(name, (), touch, Tip(place), Face(at, (-side * s, side * c))) for side in SIDES]
+        found = [OnFace(name, (), touch, Tip(place), Face(at, (-side * s, side * c))) for side in SIDES_OF_GUIDE]
     return _on_both_sides(name, (*place.bodies, *at.bodies), found)
 
 
@@ -182,5 +182,5 @@ def _on_both_sides(name: str, bodies: tuple[str, ...], found: Iterable[OnFace | 
     for i, one in enumerate(found):
         own, other = f"{name}.{i + 1}", f"{name}.{(i ^ 1) + 1}"
         touching = replace(one, name=own, bodies=bodies, touch=replace(one.touch, friction=(f"{own}.friction",)))
-        sides.append(Side(own, bodies, touching, SIDES[i % 2], other))
+        sides.append(Side(own, bodies, touching, SIDES_OF_GUIDE[i % 2], other))
     return RubbingGuide(name, bodies, tuple(sides))

@@ -20,7 +20,7 @@ from core.multibody.audit.surfaces import Face, Tip
 
 LEVEL = 1e-9
 """Sine of an angle below which a rim is meant to be level: attitudes are rounded."""
-SIDES = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 """Where its places are, in radii along its two diameters."""
 
 
@@ -63,7 +63,7 @@ class LevelRim(Definition):
 
 
 @dataclass(frozen=True)
-class Both(Definition):
+class ContactOfLevelRims(Definition):
     """A contact by places of level rims, and what makes one of them the lowest."""
 
     kind: ClassVar[str] = "contact"
@@ -86,7 +86,7 @@ def level_rim(outline: Outline[Place], face: Face, name: str, bodies: Mapping[st
     if axes is None or np.abs(axes.T @ face.normal_in(start))[:2].max() >= LEVEL:
         return None
     c, s = (1.0, 0.0) if turns is None or not turns[1] else turns[:2] / np.linalg.norm(turns[:2])
-    sides = [(radius * (c * x - s * y), radius * (s * x + c * y)) for x, y in SIDES]
+    sides = [(radius * (c * x - s * y), radius * (s * x + c * y)) for x, y in QUARTERS]
     tips = [
         Tip(Place(body, (corner.offset[0] + x, corner.offset[1] + y, corner.offset[2])))
         for corner in outline.corners

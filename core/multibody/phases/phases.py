@@ -96,7 +96,8 @@ class _Run:
         self.decided = Decided(self.states, list(self.unilateral))
         self.described, self.arguments = base, dict[Key, Argument]()
         self.turning: list[str] = []
-        self.bounced: dict[tuple[int, ...], int] = {}
+        # What struck together last, and how often in turn.
+        self.bounced: tuple[tuple[int, ...], int] = (), 0
 
     def go(self) -> None:
         """Go through the phases until the end, or until mechanics does not decide."""
@@ -292,7 +293,8 @@ class _Run:
 
     def _record(self, hit: Sequence[int], outcome: Impact, q: Sequence[Ball], v: Sequence[Ball]) -> None:
         """Add the events of an impact from a state, each with the energy that its connection takes."""
-        self.bounced = {tuple(hit): self.bounced.get(tuple(hit), 0) + 1}
+        group, count = self.bounced
+        self.bounced = tuple(hit), count + 1 if group == tuple(hit) else 1
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, balls = outcome.unilateral[i], outcome.components(i)
             impulses = {name: nearest(ball) for name, ball in balls.items()}
@@ -395,7 +397,7 @@ class _Run:
             if kind and self.motion.phases:
                 self._event(kind, one.name)
             if old is not new:
-                self.bounced = {}
+                self.bounced = (), 0
         self.decided, self.states = found, found.states
         return None
 
@@ -462,29 +464,28 @@ class _Run:
 
     def _accumulate(self, phase: Phase) -> bool:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
-        for group, count in self.bounced.items():
-            few = len(self.motion.events) >= MANY or rate_share(self.unilateral[group[0]], self.tracks) < SMALL
-            listed = count >= (LATER_LISTED if few else LISTED)
-            found = recurring(self.unilateral, group, phase, self.tracks, arb(self.end), listed=listed)
-            if found is None or not all(
-                found.tail.keeps_sign(one.law, one.sign) for one in phase.arguments if one.sign
-            ):
-                continue
-            phase.end = phase.start + found.tail.length
-            phase.settles = tuple(self.unilateral[i].name for i in group)
-            if found.exact:
-                phase.bounces = found.tail
-            else:
-                phase.tail = found.tail
-            self.tracks.each = found.ends
-            if not (self.tracks.exact and found.exact):
-                self.tracks.part(phase.still)
-            for name in phase.settles:
-                self._event("settle", name)
-            self._meet(phase, group)
-            self.bounced = {}
-            return True
-        return False
+        group, count = self.bounced
+        if not group:
+            return False
+        few = len(self.motion.events) >= MANY or rate_share(self.unilateral[group[0]], self.tracks) < SMALL
+        listed = count >= (LATER_LISTED if few else LISTED)
+        found = recurring(self.unilateral, group, phase, self.tracks, arb(self.end), listed=listed)
+        if found is None or not all(found.tail.keeps_sign(one.law, one.sign) for one in phase.arguments if one.sign):
+            return False
+        phase.end = phase.start + found.tail.length
+        phase.settles = tuple(self.unilateral[i].name for i in group)
+        if found.exact:
+            phase.bounces = found.tail
+        else:
+            phase.tail = found.tail
+        self.tracks.each = found.ends
+        if not (self.tracks.exact and found.exact):
+            self.tracks.part(phase.still)
+        for name in phase.settles:
+            self._event("settle", name)
+        self._meet(phase, group)
+        self.bounced = (), 0
+        return True
 
 
 def _impact_rates(before: Ball, after: Ball) -> ImpactRates:

@@ -39,7 +39,7 @@ from core.multibody.table.moving_places import require_two_bodies
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.touching_in_plane import circle, face
 
-SIDES = (ONE, -ONE)
+SIDES_OF_GUIDE = (ONE, -ONE)
 """Both sides of a line, that of its normal first; of a circle, outside and inside."""
 
 
@@ -90,7 +90,7 @@ def rubbing_slider(
         if not is_zero(width):
             raise InvalidParameter((*path, "width"), "be left out without a length", remedy="give the length as well")
         measures.unturned(name, a, b, path)
-        found = [(combined((side, off)), sum_of_rates(*passing)) for side in SIDES]
+        found = [(combined((side, off)), sum_of_rates(*passing)) for side in SIDES_OF_GUIDE]
     else:
         apart = difference(*(measures.coordinates.turn_of(one.body or GROUND, (*path, "length")) for one in ends))
         turned = difference(apart, constant(evaluated(apart, measures.table.q)))
@@ -99,7 +99,7 @@ def rubbing_slider(
             # Towards the first side the block is pushed by the guide below it, half of its width from the line.
             found.extend(
                 (combined((side, gap)), sum_of_rates(*passing, (constant(side * width / 2), rate_of(turned))))
-                for side in SIDES
+                for side in SIDES_OF_GUIDE
             )
     _on_both_sides(measures, name, connection, found, path)
 
@@ -127,13 +127,15 @@ def rubbing_track(measures: Measures, name: str, connection: GuideCurve, path: P
         radius = measures.numerals.number(on["radius"], (*where, "radius"))
         if not radius > 0:
             raise InvalidParameter((*where, "radius"), "be greater than 0 m")
-        touching = [circle(measures, (place, ZERO), (at, side * radius), path, rubs=True) for side in SIDES]
+        touching = [circle(measures, (place, ZERO), (at, side * radius), path, rubs=True) for side in SIDES_OF_GUIDE]
     else:
         cosine, sine = measures.numerals.angle(on.get("slope", 0), (*where, "slope"))
         n = [-sine, cosine]
-        touching = [face(measures, (place, ZERO), at, [side * x for x in n], path, rubs=True) for side in SIDES]
+        touching = [
+            face(measures, (place, ZERO), at, [side * x for x in n], path, rubs=True) for side in SIDES_OF_GUIDE
+        ]
     # Both sides slip along one direction, so that their friction adds up.
-    found = [(gap, _times(side, slip or {})) for side, (gap, slip) in zip(SIDES, touching, strict=True)]
+    found = [(gap, _times(side, slip or {})) for side, (gap, slip) in zip(SIDES_OF_GUIDE, touching, strict=True)]
     _on_both_sides(measures, name, connection, found, path)
 
 

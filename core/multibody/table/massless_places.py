@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from core.errors import Path, PlacesDisagree
+from core.formulas import names_in
 from core.multibody.algebra.directions import unit
 from core.multibody.algebra.polynomials import (
     ONE,
@@ -65,7 +66,8 @@ def _springs_and_ways(measures: Measures, body: str) -> tuple[list[tuple[str, Sp
     ways = [[ONE if i == k else ZERO for i in range(measures.dimension)] for k in range(measures.dimension)]
     guided = False
     for name, (i, one) in zip(scene.names(), scene.numbered(), strict=True):
-        named = any(isinstance(x, str) and f"{body}." in x for x in one.formulas())
+        names = {name for x in one.formulas() if isinstance(x, str) for name in names_in(x)}
+        named = any(name.partition(".")[0] == body for name in names)
         touches = any(isinstance(x, str) and x.partition(".")[0] == body for x in one.places())
         if named or (isinstance(one, Field) and (one.on is None or body in one.on)):
             return None

@@ -3,7 +3,7 @@
 Two convex polygons that are apart first touch at a corner of one of them. A corner is outside a polygon as long as its
 height above one of the edges is above zero, whichever that is; it touches one edge between the ends of that. With radii
 there are arcs about corners between the edges. Which part a corner may meet at a time is chosen from these facets
-(`core.multibody.contacts.facing`).
+(`core.multibody.table.facing`).
 
 References
 ----------

@@ -102,3 +102,17 @@ def test_what_else_acts_there_needs_a_mass(more: dict[str, Any]) -> None:
     springs = [spring("upper", "knot", [0, 0], 10, 1), spring("lower", "bob", "knot", 20, "1/2")]
     with pytest.raises(InvalidParameter, match="have mass"):
         solved([0, -10], bodies, *springs, more)
+
+
+@pytest.mark.parametrize("name", ["k", "m"])
+def test_formulas_name_bodies_and_not_parts_of_names(name: str) -> None:
+    """A force by the place of `disk` has nothing to do with a body `k`."""
+    bodies = {
+        name: {"mass": 0, "at": [1, 0]},
+        "bob": {"mass": 1, "at": [2, 0]},
+        "disk": {"mass": 1, "at": [5, 0], "velocity": [1, 0]},
+    }
+    springs = [spring("one", name, [0, 0], 10, 1), spring("other", "bob", name, 10, 1)]
+    pull = {"kind": "force", "place": "disk", "force": ["-2*disk.x", 0]}
+    found = solved([0, 0], bodies, *springs, pull)
+    np.testing.assert_allclose(columns(found, "bob.position")[0], [[2.0, 0.0]] * 3, atol=1e-14)
