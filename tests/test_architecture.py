@@ -295,7 +295,7 @@ TESTED_IN |= {
     for through, names in {
         "test_export_mjcf": "mjcf_geometries mjcf_tree start_in_numbers",
         "test_import_model": "draft plane_scene_writing scene_of_draft scene_writing",
-        "test_mjcf": "mjcf_elements mjcf_geometry mjcf_joints",
+        "test_mjcf": "mjcf_attributes mjcf_elements mjcf_geometry mjcf_joints",
     }.items()
     for name in names.split()
 }

@@ -8,9 +8,11 @@ import numpy as np
 
 from core.arrays import Floats
 from core.interchange.draft import Draft, DraftBody, DraftConnection, Ended
-from core.interchange.frames import Frame, at, vector
+from core.interchange.frames import at, vector
+from core.interchange.mjcf_attributes import leave_out_unread
+from core.interchange.mjcf_contacts import ContactReading, PlacedGeom
 from core.interchange.mjcf_elements import MAIN, Compiler, flag, limited
-from core.interchange.mjcf_geometry import add_inertia, add_shape
+from core.interchange.mjcf_geometry import add_inertia
 from core.interchange.mjcf_joints import Moving, joined, moved
 from core.interchange.xml_reading import Element, fault, numbers_in, shortened
 
@@ -22,9 +24,6 @@ WITHOUT_MOTION = ("asset", "compiler", "custom", "default", "sensor", "size", "s
 
 MEDIUM = ("density", "viscosity", "wind", "magnetic")
 """Options that are forces of what is around the bodies."""
-
-FRICTION = (1.0, 0.005, 0.0001)
-"""Friction of geometries that state none: sliding, turning, rolling, as MuJoCo has it."""
 
 
 def read_mjcf(root: Element) -> Draft:
@@ -40,6 +39,8 @@ class _Reading:
         options = [option for option in root.all("option")]
         gravity = next((one for one in options if "gravity" in one.attributes), None)
         self.draft = Draft(vector(GRAVITY if gravity is None else gravity.numbers("gravity", 3)))
+        for compiler in root.all("compiler"):
+            leave_out_unread(self.draft, compiler)
         for option in options:
             given = [name for name in MEDIUM if set(option.get(name).split()) - {"0", "0.0"}]
             if given or option.first("flag") is not None:
@@ -50,17 +51,18 @@ class _Reading:
             for name in ("qpos", "qvel")
         )
         self.key = key
+        if key is not None:
+            leave_out_unread(self.draft, key)
         self.draft.moves = bool(self.rates and any(self.rates))
         self.sites: dict[str, Ended] = {}
-        self.touching: list[tuple[Element, str | None, Frame]] = []
-        self.count = 0
+        self.touching: list[PlacedGeom] = []
         ground = Moving(at((0.0, 0.0, 0.0)), np.zeros(3), np.zeros(3))
         for world in root.all("worldbody"):
             self.body(world, None, ground, MAIN)
         if (self.places or self.rates) and self.key is not None:
             self._require_all_used()
         self.others()
-        self.contacts()
+        ContactReading(root, self.draft, self.compiler, self.touching)
 
     def _require_all_used(self) -> None:
         for name, numbers in (("qpos", self.places), ("qvel", self.rates)):
@@ -87,9 +89,11 @@ class _Reading:
                 self.carried(child, name, motion, inherited)
             elif child.name == "geom":
                 geoms.append(self.compiler.complete(child, inherited))
-                self.touching.append((geoms[-1], name, motion.frame))
+                self.touching.append(PlacedGeom(geoms[-1], name, motion.frame))
+                leave_out_unread(self.draft, geoms[-1])
             elif child.name == "site":
                 site = self.compiler.complete(child, inherited)
+                leave_out_unread(self.draft, site)
                 if "name" in site.attributes:
                     self.sites[site.get("name")] = (name, motion.frame.point(self.compiler.geom_frame(site).origin))
             elif child.name in ("frame", "replicate", "composite", "flexcomp", "include", "attach"):
@@ -108,6 +112,8 @@ class _Reading:
             self.draft.leave_out(element, "what moves it is not in the file: it stays where it is")
         own = element.get("childclass", inherited)
         joints = [self.compiler.complete(one, own) for one in element.all("joint", "freejoint")]
+        for one in (element, *element.all("inertial"), *joints):
+            leave_out_unread(self.draft, one)
         moving, found = moved(motion, self.compiler.frame(element), joints, self.compiler, self.take, self)
         self.draft.bodies[name] = DraftBody(
             name, moving.frame, 0.0, np.zeros(3), np.zeros((3, 3)), element.line, moving.velocity, moving.turning
@@ -123,6 +129,7 @@ class _Reading:
                 if one.get("active") == "false":
                     continue
                 if one.name in ("connect", "weld") and "body1" in one.attributes:
+                    leave_out_unread(self.draft, one)
                     self.equal_places(one)
                 elif one.name == "tendon" and "tendon2" not in one.attributes:
                     fixed.add(one.required("tendon1"))
@@ -163,6 +170,7 @@ class _Reading:
         if tendon.name != "spatial" or any(child.name != "site" for child in tendon.children):
             self.draft.leave_out(tendon, "only straight tendons through sites are taken")
             return
+        leave_out_unread(self.draft, tendon)
         places: list[Ended] = []
         for child in tendon.children:
             if child.required("site") not in self.sites:
@@ -194,54 +202,3 @@ class _Reading:
             self.draft.connections.append(DraftConnection(f"{name}-string", {"through": places}, own))
         if tendon.number("frictionloss", 0.0):
             self.draft.leave_out(tendon, "its friction is a constant force, which is not described")
-
-    def contacts(self) -> None:
-        """Read which bodies touch which fixed planes: named pairs, and what the bits of geometries let collide."""
-        geoms = {geom.get("name"): (geom, body, frame) for geom, body, frame in self.touching}
-        for section in self.root.all("contact"):
-            for pair in section.children:
-                if pair.name != "pair":
-                    self.draft.leave_out(pair, "contacts are with planes of the ground alone", changes_motion=False)
-                    continue
-                two = [geoms.get(pair.required(name)) for name in ("geom1", "geom2")]
-                two.sort(key=lambda one: one is not None and one[1] is not None)
-                plane, other = two
-                if plane is None or other is None or not self.touches(pair, plane, other, pair.get("friction")):
-                    self.draft.leave_out(pair, "contacts are of one geometry of a body with a plane of the ground")
-        free = [one for one in self.touching if one[0].get("contype") != "0" or one[0].get("conaffinity") != "0"]
-        moving = [one for one in free if self.draft.carrier(one[1]) is not None]
-        for one in free:
-            if self.draft.carrier(one[1]) is not None:
-                continue
-            for other in moving:
-                if not self.touches(other[0], one, other, ""):
-                    self.draft.leave_out(other[0], "contacts are of one geometry of a body with a plane of the ground")
-        if len(moving) > 1:
-            self.draft.leave_out(moving[-1][0], "contacts between bodies are described one by one")
-
-    def touches(
-        self,
-        said: Element,
-        plane: tuple[Element, str | None, Frame],
-        other: tuple[Element, str | None, Frame],
-        friction: str,
-    ) -> bool:
-        """Enter a contact; return whether it can be described."""
-        name = other[1]
-        if plane[0].get("type", "sphere") != "plane" or plane[1] is not None or name is None:
-            return False
-        mine = [geom for geom, body, _ in self.touching if body == name and geom.get("contype") != "0"]
-        if self.draft.carrier(name) != name or (len(mine) > 1 and not friction):
-            return False
-        if other[0].get("type", "sphere") in ("plane", "mesh", "hfield", "sdf"):
-            return False
-        if self.draft.bodies[name].shape is None:
-            add_shape(self.draft.bodies[name], other[0], self.compiler)
-        own = plane[2] @ self.compiler.frame(plane[0])
-        rubs = numbers_in(said, friction, "friction", None)[0] if friction else max(map(_sliding, (plane[0], other[0])))
-        self.draft.contacts.append((name, own.origin, own.rotation[:, 2], rubs))
-        return True
-
-
-def _sliding(geom: Element) -> float:
-    return numbers_in(geom, geom.get("friction"), "friction", None)[0] if geom.get("friction") else FRICTION[0]

@@ -28,11 +28,14 @@ class Compiler:
         Axes of Euler angles, in capitals those of space.
     defaults : mapping of str to (mapping of str to (mapping of str to str))
         By class and name of element.
+    inertia_from_geoms : {"auto", "true", "false"}
+        Whether bodies have the inertia of their geometries: those that state none, all, or none.
     """
 
     angle: float
     sequence: str
     defaults: Mapping[str, Mapping[str, Mapping[str, str]]]
+    inertia_from_geoms: str
 
     @classmethod
     def of(cls, root: Element) -> Compiler:
@@ -45,10 +48,14 @@ class Compiler:
         sequence = settings.get("eulerseq", "xyz")
         if len(sequence) != 3 or set(sequence.lower()) - set("xyz"):
             raise fault(root, f"must have an eulerseq of three axes, not {shortened(sequence)}")
+        inertia = settings.get("inertiafromgeom", "auto")
+        if inertia not in ("auto", "true", "false"):
+            raise fault(root, f"must have an inertiafromgeom of auto, true or false, not {shortened(inertia)}")
         defaults: dict[str, dict[str, dict[str, str]]] = {MAIN: {}}
         for element in root.all("default"):
             _add_class(element, element.get("class", MAIN), {}, defaults)
-        return cls(1.0 if settings.get("angle", "degree") == "radian" else pi / 180.0, sequence, defaults)
+        angle = 1.0 if settings.get("angle", "degree") == "radian" else pi / 180.0
+        return cls(angle, sequence, defaults, inertia)
 
     def complete(self, element: Element, inherited: str) -> Element:
         """Return an element with the defaults of its class, or of the class that its body hands down."""

@@ -26,7 +26,7 @@ SOLIDS = ("sphere", "capsule", "cylinder", "box", "ellipsoid")
 def add_inertia(body: DraftBody, element: Element, geoms: Sequence[Element], compiler: Compiler) -> None:
     """Give a body the inertia that is stated, or that of its geometries."""
     inertial = element.first("inertial")
-    if inertial is not None:
+    if inertial is not None and not (geoms and compiler.inertia_from_geoms == "true"):
         own = compiler.frame(inertial)
         body.mass, body.centre = inertial.number("mass"), own.origin
         if "fullinertia" in inertial.attributes:
@@ -36,6 +36,8 @@ def add_inertia(body: DraftBody, element: Element, geoms: Sequence[Element], com
         else:
             tensor = np.diag(inertial.numbers("diaginertia", 3))
         body.tensor = own.rotation @ tensor @ own.rotation.T
+        return
+    if compiler.inertia_from_geoms == "false":
         return
     parts = [
         Part(_solid(geom), tuple(frame.origin), tuple(as_quaternion(frame.rotation)))

@@ -126,17 +126,41 @@ def test_a_body_of_slides_that_touches_keeps_its_shape() -> None:
     assert rates["b"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
 
 
-def test_a_ball_above_a_plane_touches_it_and_others_are_left_out() -> None:
-    """It rests; a contact between two bodies is said to be left out."""
-    text = """<mujoco><worldbody><geom type="plane" size="1 1 1" friction="0.4"/>
-<body name="a" pos="0 0 0.1"><freejoint/><geom size="0.1" friction="0.7"/></body>
-<body name="b" pos="3 0 0.1"><freejoint/><geom size="0.1"/></body>
-</worldbody><actuator><motor joint="x"/></actuator></mujoco>"""
-    found, rates = imported(text)
-    assert rates["a"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
-    contacts = {one["place"]: one["friction"] for one in found.scene["connections"]}
-    assert contacts == {"a": 0.7, "b": 1.0}
-    assert [(one.at, one.what) for one in found.left_out] == [(3, "geom"), (4, "motor")]
+INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+
+
+@pytest.mark.parametrize(
+    ("inner", "line", "unread"),
+    [
+        (f'<worldbody>\n<body gravcomp="1"><joint/>{INERTIAL}</body></worldbody>', 2, "gravcomp"),
+        (f'<worldbody><body>\n<joint springdamper="0.1 1"/>{INERTIAL}</body></worldbody>', 2, "springdamper"),
+        (
+            f"""<default><joint springdamper="0.1 1"/></default>
+<worldbody><body>\n<joint/>{INERTIAL}</body></worldbody>""",
+            3,
+            "springdamper",
+        ),
+        (f'<compiler settotalmass="5"/><worldbody><body><joint/>{INERTIAL}</body></worldbody>', 1, "settotalmass"),
+        (
+            """<worldbody><body><joint/>\n<geom size="1" shellinertia="true" contype="0" conaffinity="0"/></body>
+</worldbody>""",
+            2,
+            "shellinertia",
+        ),
+        (f'<worldbody><body gravcomp="0" user="1"><joint springdamper="0 0"/>{INERTIAL}</body></worldbody>', 0, ""),
+    ],
+)
+def test_attributes_that_nothing_reads_are_left_out_unless_they_say_nothing(inner: str, line: int, unread: str) -> None:
+    left_out = import_model(f"<mujoco>{inner}</mujoco>").left_out
+    assert [(one.at, one.why) for one in left_out] == ([(line, f"not read of it: {unread}")] if unread else [])
+
+
+@pytest.mark.parametrize(("setting", "mass"), [("auto", 1.0), ("false", 1.0), ("true", 4000 / 3 * math.pi)])
+def test_inertia_is_of_geometries_as_the_compiler_says(setting: str, mass: float) -> None:
+    """A ball of water with a radius of 1 m."""
+    text = f"""<mujoco><compiler inertiafromgeom="{setting}"/><worldbody><body name="b"><joint/>{INERTIAL}
+<geom size="1" contype="0" conaffinity="0"/></body></worldbody></mujoco>"""
+    assert import_model(text).scene["bodies"]["b"]["mass"] == pytest.approx(mass, rel=1e-14)
 
 
 @pytest.mark.parametrize(
