@@ -12,6 +12,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 from urllib.error import HTTPError, URLError
@@ -53,7 +54,7 @@ def parser() -> argparse.ArgumentParser:
     study.add_argument("file", type=Path, metavar="FILE", help="a request to POST /v1/studies")
     study.add_argument("--output", type=Path, required=True, help=f"ending in one of {', '.join(ENDINGS)}")
     address = f"http://127.0.0.1:{os.environ.get('POLHODE_PORT') or '8000'}"
-    study.add_argument("--url", default=address, help=f"of the service (default {address})")
+    study.add_argument("--url", type=_address, default=address, help=f"of the service (default {address})")
     study.set_defaults(run=_study)
     key = commands.add_parser("new-key", help="make a key for a client, and its line for keys_file")
     key.add_argument("name")
@@ -103,6 +104,8 @@ def _grade(options: argparse.Namespace) -> None:
 def _study(options: argparse.Namespace) -> None:
     if options.output.suffix not in ENDINGS:
         sys.exit(f"the output must end in one of {', '.join(ENDINGS)}")
+    if not options.output.parent.is_dir():
+        sys.exit(f"{options.output}: there is no folder {options.output.parent}")
     state = json.loads(_sent(f"{options.url}/v1/studies", body=_read(options.file)))
     address = f"{options.url}/v1/studies/{state['jobID']}"
     while state["status"] in ("accepted", "running"):
@@ -113,7 +116,19 @@ def _study(options: argparse.Namespace) -> None:
     sys.stderr.write(f"\r{state['status']}       \n")
     if state["status"] != "successful":
         sys.exit(str(state.get("message", state["status"])))
-    options.output.write_bytes(_sent(f"{address}/results{ENDINGS[options.output.suffix]}"))
+    results = f"{address}/results{ENDINGS[options.output.suffix]}"
+    read = _sent(results)
+    try:
+        options.output.write_bytes(read)
+    except OSError as error:
+        sys.exit(f"{options.output}: {error.strerror}; the results stay at {results}")
+
+
+def _address(text: str) -> str:
+    """Return the address of a service without a slash at its end."""
+    if not text.startswith(("http://", "https://")):
+        raise argparse.ArgumentTypeError(f"{text} does not begin with http:// or https://")
+    return text.rstrip("/")
 
 
 def _read(file: Path) -> bytes:
@@ -132,10 +147,15 @@ def _sent(url: str, *, body: bytes | None = None) -> bytes:
             return read
     except HTTPError as refused:
         with refused:
-            problem: Any = json.load(refused)
+            said = refused.read()
+        if not refused.headers.get_content_type().endswith("json"):
+            sys.exit(f"{url}: {refused.code} {refused.reason}")
+        problem: Any = json.loads(said)
         sys.exit(f"{problem['title']}: {problem.get('detail', '')}")
     except URLError as error:
         sys.exit(f"no service at {url}: {error.reason}")
+    except (OSError, HTTPException) as error:
+        sys.exit(f"{url}: the response broke off: {error}")
 
 
 if __name__ == "__main__":

@@ -159,7 +159,7 @@ class Store:
 
     def listed(self, owner: str, order: str, start: int, count: int) -> list[Study]:
         """Return some of an owner's studies in one of `ORDERS`."""
-        return self._where(f"WHERE owner = ? ORDER BY {order}, id LIMIT ? OFFSET ?", (owner, count, start))
+        return self._where(f"WHERE owner = ? ORDER BY {order}, created, id LIMIT ? OFFSET ?", (owner, count, start))
 
     def unfinished(self) -> list[Study]:
         """Return every study that is not finished, the earliest first."""

@@ -28,6 +28,14 @@ class PlayedService(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         study = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        if study == {"count": 4}:
+            self.send_error(502)
+            return
+        if study == {"count": 5}:
+            self.send_response(202)
+            self.send_header("Content-Length", "100")
+            self.end_headers()
+            return
         if study != {"count": 2}:
             self._write(422, {"title": "Invalid parameter", "detail": "count must be 2"})
             return
@@ -43,6 +51,7 @@ class PlayedService(BaseHTTPRequestHandler):
     def _write(self, status: int, document: Any) -> None:
         body = json.dumps(document).encode()
         self.send_response(status)
+        self.send_header("Content-Type", "application/json")
         self.send_header("Content-Length", str(len(body)))
         self.end_headers()
         self.wfile.write(body)
@@ -81,7 +90,7 @@ def test_says_what_is_wrong_with_a_file(tmp_path: Path) -> None:
 def test_runs_a_study(played: str, tmp_path: Path) -> None:
     file, output = tmp_path / "study.json", tmp_path / "results.parquet"
     file.write_text('{"count": 2}')
-    main(["study", str(file), "--url", played, "--output", str(output)])
+    main(["study", str(file), "--url", f"{played}/", "--output", str(output)])
     assert json.loads(output.read_text()) == {"path": "/v1/studies/one/results.parquet"}
 
 
@@ -94,6 +103,32 @@ def test_shows_the_problem_of_a_study(played: str, tmp_path: Path) -> None:
         main(["study", str(file), "--url", played, "--output", str(tmp_path / "results.txt")])
     with pytest.raises(SystemExit, match="no service at"):
         main(["study", str(file), "--url", "http://127.0.0.1:1", "--output", str(tmp_path / "results.json")])
+
+
+@pytest.mark.parametrize(("count", "said"), [(4, "/v1/studies: 502 Bad Gateway"), (5, "the response broke off")])
+def test_says_what_comes_from_other_servers_on_the_way(played: str, tmp_path: Path, count: int, said: str) -> None:
+    file = tmp_path / "study.json"
+    file.write_text(json.dumps({"count": count}))
+    with pytest.raises(SystemExit, match=said):
+        main(["study", str(file), "--url", played, "--output", str(tmp_path / "results.json")])
+
+
+def test_an_output_that_cannot_be_written_is_told_before_the_study_if_it_is_known(played: str, tmp_path: Path) -> None:
+    file, folder = tmp_path / "study.json", tmp_path / "folder.json"
+    file.write_text('{"count": 2}')
+    PlayedService.states = ["none was sent"]
+    with pytest.raises(SystemExit, match="there is no folder"):
+        main(["study", str(file), "--url", played, "--output", str(tmp_path / "none" / "results.json")])
+    assert PlayedService.states == ["none was sent"]
+    folder.mkdir()
+    with pytest.raises(SystemExit, match=f"Is a directory; the results stay at {played}/v1/studies/one/results"):
+        main(["study", str(file), "--url", played, "--output", str(folder)])
+
+
+def test_an_address_has_a_scheme(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["study", str(tmp_path / "a.json"), "--url", "localhost:8000", "--output", str(tmp_path / "b.json")])
+    assert "localhost:8000 does not begin with http:// or https://" in capsys.readouterr().err
 
 
 def test_makes_a_key_and_passes_options_on(capsys: pytest.CaptureFixture[str]) -> None:

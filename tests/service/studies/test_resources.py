@@ -658,6 +658,8 @@ async def test_studies_are_listed_in_pages_and_orders(tmp_path: Path) -> None:
         assert found == made
         latest = (await client.get("/v1/studies?count=3")).json()["studies"]
         assert [study["jobID"] for study in latest] == made[:1:-1]
+        unstarted = (await client.get("/v1/studies?sort=-started")).json()["studies"]
+        assert [(study["started"], study["jobID"]) for study in unstarted] == [(None, name) for name in made]
         for query in ("sort=name", "count=0", "start=-1", "page=2", "count=1&count=2"):
             refused = await client.get(f"/v1/studies?{query}")
             assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "?" + query.partition("=")[0])
