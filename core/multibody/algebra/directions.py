@@ -1,8 +1,10 @@
-"""Unit vectors along a direction that a description gives and across it, and products of vectors, in balls."""
+"""Unit vectors along a direction that a description gives and across it, angles and products of vectors, in balls."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+
+from flint import arb
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
@@ -47,3 +49,13 @@ def cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
 def scalar_product(a: Sequence[Ball], b: Sequence[Ball]) -> Ball:
     """Return the scalar product a.b of two vectors."""
     return sum((x * y for x, y in zip(a, b, strict=True)), ZERO)
+
+
+def polar_angle(cosine: Ball, sine: Ball) -> Ball:
+    """Return the angle of a direction, which need not have the length one, from minus to plus half a turn (rad).
+
+    A direction that may be on either side of half a turn has an angle as narrow as it is, about plus half a turn.
+    """
+    if cosine < 0 and is_zero(sine):
+        return arb.pi() + arb.atan2(-sine, -cosine)
+    return arb.atan2(sine, cosine)

@@ -9,6 +9,7 @@ from math import floor, log10
 
 from flint import arb
 
+from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.assembly.exact_places import DIGITS
 from core.multibody.language.body import SceneBody
@@ -30,7 +31,7 @@ def angle_between(frame: Frame, before: Sequence[Ball], after: Sequence[Ball]) -
         c, s = frame.direction
         along = before[c] * after[c] + before[s] * after[s]
         across = before[c] * after[s] - before[s] * after[c]
-        return ZERO if is_zero(across) and along > 0 else arb.atan2(across, along)
+        return ZERO if is_zero(across) and along > 0 else polar_angle(along, across)
     return ZERO if frame.turn is None else after[frame.turn] - before[frame.turn]
 
 

@@ -7,11 +7,12 @@ inverse; rates in constant proportion are integrated. What remains is held by mu
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from flint import arb
 
+from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, degree, entry, evaluated, is_zero
 from core.multibody.formulation.trigonometric_sums import TIME, Sum, Term, Variable, added
 from core.multibody.formulation.unused_names import unused
@@ -65,6 +66,8 @@ class Chart:
         Why the variables suffice, in sentences.
     taken : collection of str
         Names of the variables of other tables.
+    given : mapping of str to ball
+        The angles of bodies of the plane at the start, with their whole turns (rad).
     """
 
     table: Table
@@ -76,12 +79,19 @@ class Chart:
     rounds: list[Round] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
     taken: Collection[str] = ()
+    given: Mapping[str, Ball] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, table: Table, symbols: list[str], taken: Collection[str] = ()) -> Chart:
+    def of(
+        cls,
+        table: Table,
+        symbols: list[str],
+        taken: Collection[str] = (),
+        given: Mapping[str, Ball] | None = None,
+    ) -> Chart:
         """Return the chart of a table, with no variables of names that are taken."""
         places = [Sum.variable(name) for name in symbols]
-        chart = cls(table, symbols, places, rows=list(table.rows), taken=frozenset(taken))
+        chart = cls(table, symbols, places, rows=list(table.rows), taken=frozenset(taken), given=given or {})
         for name, place, rate in zip(symbols, table.q, table.v, strict=True):
             chart.start[name], chart.rates[name] = place, rate
         chart.start[TIME] = ZERO
@@ -193,12 +203,12 @@ class Chart:
         names = [new]
         if len(chosen) == 2:
             if heading:
-                ways, angle = [cosine, sine], arb.atan2(u[1], u[0])
+                ways, angle = [cosine, sine], polar_angle(u[0], u[1])
             else:
-                ways, angle = [sine, cosine.times(-ONE)], arb.atan2(u[0], -u[1])
+                ways, angle = [sine, cosine.times(-ONE)], polar_angle(-u[1], u[0])
             turning = (u[0] * du[1] - u[1] * du[0]) / (size * size)
             # An angle that is a coordinate, too, has its turns.
-            self.start.setdefault(new, angle)
+            self.start.setdefault(new, self.given.get(stem, angle) if is_angle else angle)
             self.rates[new] = turning
         else:
             about = self._new(f"{stem or end}.phi", taken=new)
@@ -207,7 +217,7 @@ class Chart:
             flat = (u[0] * u[0] + u[1] * u[1]).sqrt()
             rise = sign * (u[0] * u[0] + u[1] * u[1]) * du[2] - sign * u[2] * (u[0] * du[0] + u[1] * du[1])
             self.start[new], self.rates[new] = arb.atan2(flat, sign * u[2]), -rise / (flat * size * size)
-            self.start[about] = arb.atan2(u[1], u[0])
+            self.start[about] = polar_angle(u[0], u[1])
             self.rates[about] = (u[0] * du[1] - u[1] * du[0]) / (flat * flat)
             names.append(about)
         for i, arm, way in zip(chosen, arms, ways, strict=True):

@@ -12,13 +12,14 @@ from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.equations.dynamics import kinetic, potential
 from core.multibody.equations_answer import ConservedQuantity, CoordinateAtStart, LinearEquations, SceneEquations
+from core.multibody.formulation.body_angles import angle_of_body
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.closed_forms import closed_forms
 from core.multibody.formulation.conserved import ENERGY, Conserved, conserved_of_part
 from core.multibody.formulation.constants import Constants
 from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
-from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms, require_doubles
+from core.multibody.formulation.formula_nodes import node_of_sum, node_of_terms, require_doubles
 from core.multibody.formulation.lagrange import lagrange_equations, measures_of
 from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
 from core.multibody.formulation.linear_equations import linear_equations
@@ -81,6 +82,8 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
     coordinates = found.described.measures.coordinates
     columns = columns_of(reduced, found.described.scene.bodies, coordinates.dimension)
     symbols = symbols_of(reduced.table.names)
+    directed = [name for name, frame in coordinates.frames.items() if frame.direction is not None]
+    given = {name: coordinates.start_angle(name) for name in directed}
     written = _Written()
     # What rests stays where it is.
     for i, place in enumerate(reduced.table.q):
@@ -89,7 +92,7 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
         own = {k: columns[i] for k, i in enumerate(piece.indices) if i in columns}
         body = turning_body(piece.table)
         if body is None:
-            _write_part(written, piece, motion, [symbols[i] for i in piece.indices], own)
+            _write_part(written, piece, motion, [symbols[i] for i in piece.indices], own, given)
         else:
             _write_body(written, body, symbols[piece.indices[0]].partition(".")[0], piece)
     if any(row.slide is not None for row in found.described.measures.table.rows):
@@ -161,12 +164,17 @@ def _rests(motion: Motion) -> bool:
 
 
 def _write_part(
-    written: _Written, piece: Piece, motion: Motion, symbols: list[str], columns: Mapping[int, Node]
+    written: _Written,
+    piece: Piece,
+    motion: Motion,
+    symbols: list[str],
+    columns: Mapping[int, Node],
+    given: Mapping[str, Ball],
 ) -> None:
     """Write a part in the variables of its chart."""
     # Rows that follow from others have no multipliers of their own.
     table = replace(piece.table, rows=[piece.table.rows[r] for r in piece.chosen])
-    chart = Chart.of(table, symbols, written.coordinates)
+    chart = Chart.of(table, symbols, written.coordinates, given)
     names = force_symbols(piece.table.acting, written.forces)
     multipliers = [f"{MULTIPLIER}{written.multipliers + k + 1}" for k in range(len(chart.rows))]
     written.multipliers += len(multipliers)
@@ -262,20 +270,10 @@ def _places(found: Modelled, written: _Written) -> dict[str, Node]:
                 answer[column] = node_of_sum(sums[i])
         if frame.turn is None and frame.direction is not None:
             cosine, sine = (sums[i] for i in frame.direction)
-            answer[f"{name}.angle"] = _angle(cosine, sine)
+            given = found.described.measures.coordinates.start_angle(name)
+            answer[f"{name}.angle"] = angle_of_body(cosine, sine, given, written.start)
     return answer
 
 
 def _substituted(expression: Mapping[tuple[int, ...], Ball], places: Mapping[int, Sum]) -> Sum:
     return added(places[key[0]].times(value) if key else Sum.number(value) for key, value in expression.items())
-
-
-def _angle(cosine: Sum, sine: Sum) -> Node:
-    """Return the angle with a cosine and a sine."""
-    if len(cosine.terms) == 1:
-        term = next(iter(cosine.terms))
-        if term.function == "cos" and len(term.wave) == 1 and cosine == Sum.cosine(term.wave[0][0]):
-            name = term.wave[0][0]
-            if sine == Sum.sine(name):
-                return Node("name", name)
-    return call("atan2", node_of_sum(sine), node_of_sum(cosine))

@@ -48,18 +48,20 @@ def _symbol(name: str) -> str:
 
 def columns_of(reduced: Reduced, bodies: Collection[str], dimension: int) -> dict[int, Node]:
     """Return formulas of columns for the coordinates of a reduced table, as far as these follow from columns."""
-    lines: list[tuple[dict[int, Ball], Poly]] = []
+    lines: list[tuple[dict[int, Ball], Poly, bool]] = []
     names: dict[int, Node] = {}
     for i, (name, expression) in enumerate(zip(reduced.names, reduced.expressions, strict=True)):
         column = _column(name, bodies, dimension)
         line = {key[0]: x for key, x in expression.items() if key}
         if column is not None and line:
             names[i] = column
-            lines.append((line, combined((ONE, {(i,): ONE}), (-ONE, {(): expression.get((), ZERO)}))))
-    # What stands alone in a column is that column, before any combination of others.
-    lines.sort(key=lambda entry: (len(entry[0]), any(x != 1 for x in entry[0].values())))
+            value = combined((ONE, {(i,): ONE}), (-ONE, {(): expression.get((), ZERO)}))
+            lines.append((line, value, column.kind not in DIRECTION))
+    # What stands alone in a column is that column, before any combination of others; the direction of a body is that of
+    # its angle, which has its turns, before that of a place.
+    lines.sort(key=lambda entry: (len(entry[0]), any(x != 1 for x in entry[0].values()), entry[2]))
     pivots: dict[int, tuple[dict[int, Ball], Poly]] = {}
-    for line, value in lines:
+    for line, value, _ in lines:
         _add(pivots, line, value)
     return {k: node_of_poly(value, names) for k, (line, value) in pivots.items() if not line}
 

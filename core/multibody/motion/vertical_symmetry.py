@@ -15,6 +15,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.double_double import dd_add, dd_sub
+from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.equations.packed import packed, pair, state, two_to, units_of
 from core.multibody.motion.motion import Motion, States
@@ -241,7 +242,7 @@ def _angle(start: tuple[Floats, Floats], end: tuple[Floats, Floats]) -> Ball:
         x, y, u, w = (arb(p[0]) + arb(p[1]) for p in (before[0], before[1], after[0], after[1]))
         cosine = cosine + x * u + y * w
         sine = sine + x * w - y * u
-    return arb.atan2(sine, cosine)
+    return polar_angle(cosine, sine)
 
 
 def _unwrapped(motion: Periodic, angle: float) -> float | None:

@@ -8,13 +8,13 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, ctx
+from flint import ctx
 
 from core.balls import Undetermined, precision
 from core.digits.adaptive_precision import working_bits
 from core.digits.decimals import decimal, floor_below, place_of
 from core.errors import NotApplicable
-from core.multibody.algebra.directions import scalar_product
+from core.multibody.algebra.directions import polar_angle, scalar_product
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
 from core.multibody.answer import Energy
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
@@ -206,7 +206,7 @@ class PartProof:
             places.append([evaluated(expressions[i], z) for i in frame.direction])
         places.append([q[i] for i in frame.direction])
         for (c, s), (x, y) in pairwise(places):
-            total = total + arb.atan2(c * y - s * x, c * x + s * y)
+            total = total + polar_angle(c * x + s * y, c * y - s * x)
         return total
 
     def _vector(self, components: Sequence[Ball]) -> list[str]:

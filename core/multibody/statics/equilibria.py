@@ -16,6 +16,7 @@ from flint import arb
 
 from core.balls import precision
 from core.errors import AccuracyUnreachable, NotApplicable
+from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import BITS, Ball, evaluated
 from core.multibody.answer import Equilibrium, EquilibriumErrors
@@ -125,7 +126,7 @@ def _tie(found: Described, small: Reduced, turn: int | None, direction: tuple[in
     assert direction is not None
     q = found.measures.table.q
     now, cosine, sine = (small.expressions[i] for i in (turn, *direction))
-    return Tie(now, cosine, sine, q[turn], arb.atan2(q[direction[1]], q[direction[0]]))
+    return Tie(now, cosine, sine, q[turn], polar_angle(q[direction[0]], q[direction[1]]))
 
 
 def _different(places: Iterable[ExactPlace], equations: RestEquations, turns: Set[int]) -> list[ExactPlace]:
@@ -173,7 +174,7 @@ def _described(found: Described, small: Reduced, equations: RestEquations, place
             angle = where[frame.turn]
         elif frame.direction is not None:
             c, s = frame.direction
-            angle = arb.atan2(where[s], where[c])
+            angle = polar_angle(where[c], where[s])
         else:
             continue
         angles[name] = in_doubles(angle)

@@ -21,6 +21,7 @@ import numpy as np
 from flint import arb, arb_mat, ctx
 
 from core.arrays import Floats
+from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.pivoting import pivoted
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, is_zero
 from core.multibody.table.table import Row, Table
@@ -60,7 +61,7 @@ class Tie:
     def away(self, q: Sequence[Ball]) -> Ball:
         """Return by how much the angle differs from the direction, but for full turns."""
         gone = evaluated(self.turn, q) - self.start
-        turned = arb.atan2(evaluated(self.sine, q), evaluated(self.cosine, q)) - self.heading
+        turned = polar_angle(evaluated(self.cosine, q), evaluated(self.sine, q)) - self.heading
         whole = 2 * arb.pi()
         return gone - turned - whole * ((gone - turned) / whole + 0.5).mid().floor()
 

@@ -15,6 +15,7 @@ from math import hypot, pi
 import numpy as np
 from flint import arb, arb_mat
 
+from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.polynomials import ZERO, Ball, evaluated
 from core.multibody.equations.dynamics import kinetic, potential
 from core.multibody.equations.expansion import saddle
@@ -116,7 +117,7 @@ def _angle(first: Ball, direction: tuple[int, int], state: _State) -> list[Ball]
     """Return an angle up to full turns."""
     c, s = (state.table.q[i] for i in direction)
     x, y = first.cos(), first.sin()
-    return [first + arb.atan2(x * s - y * c, x * c + y * s)]
+    return [first + polar_angle(x * c + y * s, x * s - y * c)]
 
 
 def _rate(direction: tuple[int, int], state: _State) -> list[Ball]:

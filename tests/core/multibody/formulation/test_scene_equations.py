@@ -304,3 +304,31 @@ def test_equations_with_numbers_beyond_doubles_are_refused(mass: float, gravity:
     assert solve_scene(scene_of(question), [], ["energy"]).energy is not None
     with pytest.raises(NotApplicable, match="range of doubles"):
         solve_scene(scene_of(question), [], ["equations"])
+
+
+@pytest.mark.parametrize("angle", [7.3, -4, 3, 40])
+@pytest.mark.parametrize(("arm", "x"), [(1, 0), (-0.5, 1000)])
+@pytest.mark.parametrize("welded", [None, 0, 2, -9])
+def test_angles_of_bodies_are_those_of_their_columns_with_their_turns(
+    angle: float, arm: float, x: int, welded: float | None
+) -> None:
+    def body(far: float, turned: float) -> dict[str, Any]:
+        at = [f"{x} + {far}*cos({angle})", f"{far}*sin({angle})"]
+        return {"mass": 1, "inertia": 0.1, "at": at, "angle": turned, "places": {"top": [-far, 0]}}
+
+    bodies, connections = {"rod": body(arm, angle)}, [{"kind": "pin", "a": "rod.top", "b": [x, 0]}]
+    if welded is not None:
+        bodies["other"] = body(2 * arm, welded)
+        connections.append({"kind": "weld", "a": "rod", "b": "other"})
+    scene = {"gravity": [0, -10], "bodies": bodies, "connections": connections}
+    answer = answer_of(scene_from(scene))
+    assert answer.equations is not None
+    assert answer.trajectory is not None
+    known = {name: Jet(mpmath.mpf(value)) for name, value in answer.equations.constants.items()}
+    known |= {name: Jet(mpmath.mpf(one.value)) for name, one in answer.equations.start.items()}
+    columns = {name: answer.trajectory.columns[f"{name}.angle"].values[0] for name in bodies}
+    for name, column in columns.items():
+        assert abs(evaluated(answer.equations.places[f"{name}.angle"], known).value - column) < 1e-13
+    for name, formula in answer.equations.coordinates.items():
+        assert formula in {f"{one}.angle" for one in columns}
+        assert abs(answer.equations.start[name].value - columns[formula.removesuffix(".angle")]) < 1e-13

@@ -278,3 +278,27 @@ def test_strings_rest_where_some_share_of_the_load_leaves_all_of_them_taut(
     found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
     assert found is not None
     assert any(one.positions["p"] == (0.0, -1.0) for one in found) == rests
+
+
+@pytest.mark.parametrize("x", [0, 1000])
+@pytest.mark.parametrize("angle", [0, 90, 180, 270, 360])
+@pytest.mark.parametrize("top", [(0, 1), (1, 0), (0, -1), (-1, 0), (0.6, -0.8)])
+def test_a_rod_hangs_and_stands_at_whichever_of_its_places_it_is_pinned(
+    top: tuple[float, float], angle: int, x: int
+) -> None:
+    """Its angle takes the arm (p, q) to (0, 1) where it hangs, and to (0, -1) where it stands, also at half a turn."""
+    p, q = top
+    turn = math.radians(angle)
+    c, s = round(math.cos(turn)), round(math.sin(turn))
+    at = [f"{x} - ({c})*({p}) + ({s})*({q})", f"-({s})*({p}) - ({c})*({q})"]
+    rod = {"mass": 1, "inertia": 0.1, "at": at, "angle": {"degrees": angle}, "places": {"top": [p, q]}}
+    pin = {"kind": "pin", "a": "rod.top", "b": [x, 0]}
+    scene = {"gravity": [0, -9.81], "bodies": {"rod": rod}, "connections": [pin]}
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert [one.stable for one in found] == [True, False]
+    arm = complex(*top)
+    for one, up in zip(found, (1, -1), strict=True):
+        assert one.positions["rod"] == pytest.approx((x, -up), abs=1e-12)
+        assert one.errors.angles["rod"] < 1e-14
+        assert abs(arm * mpmath.expj(one.angles["rod"]) - up * 1j) < 1e-14
