@@ -331,7 +331,8 @@ TESTED_IN |= {
             "laws/law laws/linear laws/samples laws/series laws/tape table/formula_laws"
         ),
         "formulation/test_scene_equations": (
-            "equations_answer formulation/body_angles formulation/chart formulation/closed_forms formulation/constants "
+            "equations_answer formulation/body_angles formulation/chart formulation/circles "
+            "formulation/closed_forms formulation/constants "
             "formulation/euler formulation/conserved formulation/constraint_forces "
             "formulation/formula_nodes formulation/lagrange formulation/law_forces formulation/linear_equations "
             "formulation/sides formulation/symbols"

@@ -14,6 +14,7 @@ from flint import arb
 
 from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, degree, entry, evaluated, is_zero
+from core.multibody.formulation.circles import circle_of, neighbours
 from core.multibody.formulation.trigonometric_sums import TIME, Sum, Term, Variable, added
 from core.multibody.formulation.unused_names import unused
 from core.multibody.table.table import Row, Table
@@ -156,8 +157,8 @@ class Chart:
             if len(key) == 2 and key[0] == key[1] and self._free(key[0]) and self._may_turn(key[0]):
                 squares.setdefault(float(value), []).append(key[0])
         for among in sorted(squares.values(), key=len, reverse=True):
-            for chosen in _groups(among):
-                found = None if self._ties(row, chosen) else _round(measure, chosen)
+            for chosen in neighbours(among):
+                found = None if self._ties(row, chosen) else circle_of(measure, chosen)
                 if found is not None and self._is_apart(*found, chosen) and self._has_radius(found[1], chosen):
                     self._take_angles(row, chosen, *found)
                     return True
@@ -196,8 +197,8 @@ class Chart:
             chosen, arms = [chosen[k] for k in order], [arms[k] for k in order]
             u, du = [u[k] for k in order], [du[k] for k in order]
         stem, _, end = self.symbols[chosen[0]].rpartition(".")
-        is_angle = len(chosen) == 2 and tuple(self.symbols[i].rpartition(".")[2] for i in chosen) == DIRECTION
-        new = self._angle_of_body(stem, u) if is_angle else self._new(f"{stem or end}.theta")
+        is_angle = tuple(self.symbols[i].rpartition(".")[2] for i in chosen) == DIRECTION and self._heads(stem, u)
+        new = self._angle_of_body(stem) if is_angle else self._new(f"{stem or end}.theta")
         length = Sum.of(radius, self.places)
         cosine, sine = Sum.cosine(new), Sum.sine(new)
         names = [new]
@@ -208,7 +209,7 @@ class Chart:
                 ways, angle = [sine, cosine.times(-ONE)], polar_angle(-u[1], u[0])
             turning = (u[0] * du[1] - u[1] * du[0]) / (size * size)
             # An angle that is a coordinate, too, has its turns.
-            self.start.setdefault(new, self.given.get(stem, angle) if is_angle else angle)
+            self.start.setdefault(new, self.given[stem] if is_angle else angle)
             self.rates[new] = turning
         else:
             about = self._new(f"{stem or end}.phi", taken=new)
@@ -229,14 +230,18 @@ class Chart:
         enough = "circle: an angle suffices" if len(chosen) == 2 else "sphere: two angles suffice"
         self.steps.append(f"{row.name}: {held} lie on a {enough}")
 
-    def _angle_of_body(self, body: str, direction: list[Ball]) -> str:
-        """Return the name of the angle of a direction: that of the coordinate which is this angle, if there is one."""
+    def _heads(self, body: str, direction: list[Ball]) -> bool:
+        """Return whether a direction is that of a body at the start, and no sum of directions."""
+        if body not in self.given:
+            return False
+        sine, cosine = self.given[body].sin_cos()
+        return is_zero(direction[0] - cosine) and is_zero(direction[1] - sine)
+
+    def _angle_of_body(self, body: str) -> str:
+        """Return the name of the angle of a body: that of the coordinate which is this angle, if there is one."""
         name = f"{body}.angle"
-        if name in self.symbols and self._free(self.symbols.index(name)):
-            sine, cosine = self.start[name].sin_cos()
-            if is_zero(direction[0] - cosine) and is_zero(direction[1] - sine):
-                return name
-        return self._new(name)
+        own = name in self.symbols and self._free(self.symbols.index(name))
+        return name if own and is_zero(self.start[name] - self.given[body]) else self._new(name)
 
     def _new(self, name: str, taken: str = "") -> str:
         """Return a name that no variable has."""
@@ -299,52 +304,3 @@ def _proportions(value: Sum) -> tuple[dict[str, Ball], Ball] | None:
     if any(slope - base.times(factors[name]) for name, slope in slopes.items()) or rest - base.times(constant):
         return None
     return factors, constant
-
-
-def _groups(among: list[int]) -> list[list[int]]:
-    """Return three or two neighbours of some coordinates, all three of a vector first."""
-    threes = [among[k : k + 3] for k in range(len(among) - 2)] if len(among) == 3 else []
-    return threes + [[a, b] for k, a in enumerate(among) for b in among[k + 1 :]]
-
-
-def _round(measure: Poly, chosen: list[int]) -> tuple[list[Poly], Poly] | None:
-    """Return the arms and the radius of a measure that is a circle or sphere in some coordinates, None of another."""
-    lead = measure[chosen[0], chosen[0]]
-    arms, rest = [], dict(measure)
-    for i in chosen:
-        arm: Poly = {(i,): ONE}
-        for key, value in measure.items():
-            if i in key and key != (i, i):
-                other = tuple(k for k in key if k != i)
-                if set(other) & set(chosen):
-                    return None
-                arm[other] = value / (2 * lead)
-        arms.append(arm)
-        rest = combined((ONE, rest), (-lead, _square(arm)))
-    return None if (radius := _root(combined((-1 / lead, rest)))) is None else (arms, radius)
-
-
-def _square(form: Poly) -> Poly:
-    found: Poly = {}
-    for a, x in form.items():
-        for b, y in form.items():
-            key = tuple(sorted(a + b))
-            found[key] = entry(found, key) + x * y
-    return {key: value for key, value in found.items() if not is_zero(value)}
-
-
-def _root(poly: Poly) -> Poly | None:
-    """Return the affine polynomial of which a quadratic is the square, None without one."""
-    square = next((key for key in poly if len(key) == 2 and key[0] == key[1]), None)
-    if square is None:
-        if degree(poly) > 0 or not entry(poly, ()) > 0:
-            return None
-        return {(): poly[()].sqrt()}
-    if not poly[square] > 0:
-        return None
-    lead, i = poly[square].sqrt(), square[0]
-    root: Poly = {(i,): lead}
-    for key, value in poly.items():
-        if i in key and key != square:
-            root[tuple(k for k in key if k != i)] = value / (2 * lead)
-    return root if not combined((ONE, poly), (-ONE, _square(root))) else None

@@ -152,11 +152,13 @@ class Whole:
     def returns_after(self, motion: Motion) -> Ball | None:
         """Return the time (s) after which the state of a part returns, up to a turn about the vertical.
 
-        None where it never does: what rolls on is elsewhere after its period, what turns over by whole turns is not.
+        None where it never does: what rolls on is elsewhere after its period, what turns over by whole turns is not. A
+        coordinate that no body has, as the parameter of a closed curve, may go on: nothing depends on what winds on.
         """
         indices = next(own for own, one in self.parts if one is motion)
         moved = dict(zip(indices, motion.moved_on, strict=False))
-        for expression, unit in zip(self.reduced.expressions, self.measures.table.units, strict=True):
+        for i in {i for frame in self.measures.coordinates.frames.values() for i in frame.coordinates}:
+            expression, unit = self.reduced.expressions[i], self.measures.table.units[i]
             way = sum((value * moved[key[0]] for key, value in expression.items() if key and key[0] in moved), ZERO)
             turns = way / (2 * arb.pi()) if unit == "rad" else way
             if not (turns.contains_integer() if unit == "rad" else turns.contains(0)):

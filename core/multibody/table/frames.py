@@ -48,6 +48,14 @@ class Frame:
     places: dict[str, tuple[Ball, ...]] = field(default_factory=dict)
     shape: Shape | None = None
 
+    @property
+    def coordinates(self) -> list[int]:
+        """All of its coordinates."""
+        triples = [] if self.axes is None else [i for axis in self.axes for i in axis]
+        along = [] if self.axis is None else self.axis[1]
+        turn = [] if self.turn is None else [self.turn]
+        return [*self.position, *(self.direction or ()), *turn, *triples, *along, *(self.turns or ())]
+
 
 @dataclass(frozen=True)
 class Point:

@@ -106,6 +106,39 @@ def test_digits_are_proven_where_the_parameter_is_a_double() -> None:
         assert abs(mpmath.mpf(found.columns["bead.position"].values[0][1]) - height) < mpmath.mpf(10) ** -18
 
 
+@pytest.mark.parametrize("gravity", [0, -1])
+@pytest.mark.parametrize("speed", [3, -4])
+@pytest.mark.parametrize(("height", "x"), [("sin(u)", 0), ("sin(2*u)/2", 0), ("sin(u)", 1000)])
+@pytest.mark.parametrize("alone", [True, False])
+def test_what_goes_round_a_closed_curve_repeats(height: str, x: int, speed: int, gravity: int, alone: bool) -> None:
+    """The period is the integral of ds/v round the curve, with v^2 = v_0^2 - 2 g y, by the trapezoidal rule.
+
+    That converges exponentially for what is periodic.
+    """
+    bodies = {"bead": {"mass": 2, "at": [x + 1, 0], "velocity": [0, speed]}}
+    if not alone:
+        bodies["rest"] = {"mass": 1, "at": [5, 5]}
+    connections = [{"kind": "track", "place": "bead", "on": {"curve": [f"{x} + cos(u)", height]}}]
+    if not alone:
+        connections.append({"kind": "pin", "a": "rest", "b": [5, 5]})
+    scene = {"gravity": [0, gravity], "bodies": bodies, "connections": connections}
+    u = 2 * np.pi * np.arange(400) / 400
+    if height == "sin(u)":
+        y, slope = np.sin(u), np.ones(400)
+    else:
+        y, slope = np.sin(2 * u) / 2, np.hypot(np.sin(u), np.cos(2 * u))
+    expected = 2 * np.pi * np.mean(slope / np.sqrt(speed**2 + 2 * gravity * y))
+    answer = solve_scene(scene_from(scene), [7.0], ["trajectory"])
+    assert answer.period == pytest.approx(expected, rel=1e-13)
+
+
+def test_what_goes_on_along_an_open_curve_does_not_repeat() -> None:
+    bead = {"mass": 2, "at": [0, -1], "velocity": [9, 0]}
+    track = {"kind": "track", "place": "bead", "on": {"curve": ["2*u + sin(u)", "-cos(u)"]}}
+    scene = {"gravity": [0, -1], "bodies": {"bead": bead}, "connections": [track]}
+    assert solve_scene(scene_from(scene), [7.0], ["trajectory"]).period is None
+
+
 def test_where_a_curve_loses_its_direction_the_motion_ends() -> None:
     """By u^3 a parabola has none at u = 0, which the bead reaches."""
     found = solved([1, 1], {"curve": ["u^3", "u^6"], "start": 2})
