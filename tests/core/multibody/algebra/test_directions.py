@@ -7,6 +7,7 @@ import cmath
 import pytest
 from flint import arb
 
+from core.balls import precision
 from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.polynomials import ZERO
 
@@ -21,7 +22,8 @@ def test_the_angle_of_a_direction_of_any_length(angle: float, length: float) -> 
 @pytest.mark.parametrize(("side", "expected"), [(1, 0), (-1, cmath.pi)])
 @pytest.mark.parametrize("sine", [ZERO, arb(0, 1e-20), arb(1e-20, 2e-20), arb(-1e-20, 2e-20)])
 def test_what_is_not_told_from_half_a_turn_has_a_narrow_angle(side: int, expected: float, sine: arb) -> None:
-    found = polar_angle(arb(side), sine)
+    with precision(128):
+        found = polar_angle(arb(side), sine)
     assert float(found.rad()) < 1e-19
     assert abs(float(found) - expected) < 1e-15
 
