@@ -249,12 +249,15 @@ class _Connection:
             return -dot(np.stack([at.forces[name] for name in names], axis=-1), rate)
 
         stuck = state == "stick"
-        if stuck.any():
+        # Of a body of which only the axis is answered no place has a rate that is known.
+        if stuck.any() and self.known:
             self._hold(f"stick of {force}", slip, self.speed, slip(self.samples), rows=stuck)
         sliding = given & ((state == "slide") | (state == "slide back"))
         if not sliding.any():
             return
         self._hold(f"sliding friction of {force}", full, self.scale, full(self.samples), forces=every, rows=sliding)
+        if not self.known:
+            return
         law, value = f"friction of {force} against the slip", against(self.samples)
         size = self.scale * self.speed
         self._hold(law, against, size, value, forces=every, rows=sliding, one_sided=True)
