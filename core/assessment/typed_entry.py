@@ -34,6 +34,8 @@ _TWO_SIGNS = re.compile(r"[-+]{2}|(?:\+\s+-|-\s+\+)\s*[\d.,]")
 """Two signs together: ``2.5 +- 0.3`` and ``2.5 + - 0.3`` are no differences, and ``--2`` nothing that anybody means."""
 _JOINED = re.compile(rf"(?:(?!{_FUNCTION})(?:1\s*/\s*)?[A-Za-zµμΩ%°](?:[^-+]|\^\s*[-+])*?(?:\s+|(?<=°)))?[-+]\s*(.+)")
 """Behind a number, perhaps behind its unit: a sign and what it joins to the number."""
+_IN_BRACKETS = re.compile(r"\(\d+\)\s*(?:[^-+*/^(\s\d].*)?")
+"""Behind a number: another one in brackets, and perhaps a unit."""
 _UNCLEAR_QUOTIENT = re.compile(rf"/\s*{DIGITS}(?={_FUNCTION}|√)")
 """``1/2π`` may be π/2 or the reciprocal of 2π; ``1/2 π`` is half of π."""
 _SEPARATOR = re.compile(r"[;|]|,\s")
@@ -152,7 +154,10 @@ def _joins_a_number(rest: str, entry: str, locale: Locale | None) -> bool:
     """Return whether all that follows the number of an entry is a sign and one more number, with units or without.
 
     A second sign, ``2 - -3``, makes it a difference unless both numbers are negative: ``-3 - -2`` may be a range.
+    In ``6.28(1)`` the second number may be the error of the last digits.
     """
+    if _IN_BRACKETS.fullmatch(rest):
+        return True
     joined = _JOINED.fullmatch(rest)
     if joined is None or (joined[1][0] in "-+" and not entry.startswith("-")):
         return False

@@ -180,6 +180,8 @@ def test_a_locale_decides_what_a_comma_is(text: str, locale: Locale, value: floa
         ("2·10²-3·10² N", None),
         ("6.2-6.3 1/s", None),
         ("[1-2; 3] m", None),
+        ("6.28(1) s", None),
+        ("6,283(12)", "de"),
         ("1/2π Hz", None),
         ("1/2sin(a)", "en"),
         ("6 s 280 ms", None),
@@ -222,6 +224,8 @@ def test_the_reading_with_a_decimal_comma_has_one_where_the_comma_decides() -> N
 def test_a_range_or_a_value_with_its_error_is_told_how_to_be_written() -> None:
     with pytest.raises(EntryFault, match="6,2-6,3 s may be a calculation, a range") as fault:
         typed_entry("T = 6,2-6,3 s", "de")
+    with pytest.raises(EntryFault, match="a range, or a value with its error"):
+        typed_entry("6.28(1) s")
     assert fault.value.sentence.text("en") == (
         "6,2-6,3 s can mean a calculation, a range, or a value with its uncertainty. "
         "Write the result as a single number."
