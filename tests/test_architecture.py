@@ -22,6 +22,7 @@ ALLOWED: dict[str, set[str]] = {
     "notices": {"errors"},
     "quantities": {"errors"},
     "formulas": {"errors", "near_names"},
+    "formulas_in_doubles": {"formulas", "errors", "near_names"},
     "work": set(),
     "rows": {"quantities", "errors", "work"},
     "double_double": {"compiled", "lanes", "arrays"},
@@ -40,7 +41,7 @@ ALLOWED["multibody"] = (
     | ALLOWED["rotation"]
     | ALLOWED["scenes"]
 )
-ALLOWED["interchange"] = {"multibody"} | ALLOWED["multibody"]
+ALLOWED["interchange"] = {"multibody", "formulas_in_doubles"} | ALLOWED["multibody"]
 """What each package or module of core may import besides itself. Those in OUTER may import all of core."""
 
 WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",
@@ -279,6 +280,7 @@ TESTED_IN |= {
     for name in ("comparison", "computed", "model", "problem", "search", "statistics", "wording")
 }
 TESTED_IN["core/multibody/reduction/least_places.py"] = "core/multibody/phases/test_passing_touch.py"
+TESTED_IN["core/formulas_in_doubles.py"] = "core/test_formulas.py"
 TESTED_IN["core/fits/unknowns.py"] = "service/test_fits.py"
 TESTED_IN["core/assessment/typed_number.py"] = "core/assessment/test_typed_entry.py"
 TESTED_IN["core/assessment/typed_signs.py"] = "core/assessment/test_typed_entry.py"
@@ -338,6 +340,7 @@ TESTED_IN |= {
             "formulation/sides formulation/symbols"
         ),
         "formulation/notation/test_notations": "formulation/notation/latex formulation/notation/mathml "
+        "formulation/notation/modelica "
         "formulation/notation/names formulation/notation/plain",
         "table/test_formulas_of_time": "audit/driven table/moving_places",
         "table/test_joints_of_space": "audit/joints_of_space",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import operator
 from collections.abc import Mapping
 from fractions import Fraction
 
-from core.formulas import FUNCTIONS, Arithmetic, Formula, Node, value_of
+from core.formulas import FUNCTIONS, Formula, Node, value_of
+from core.formulas_in_doubles import DOUBLES
 
 Powers = Mapping[str, Fraction]
 """Powers of base units, none of them 0."""
@@ -32,15 +32,6 @@ class DimensionFault(ValueError):
     def __init__(self, key: str) -> None:
         super().__init__(key)
         self.key = key
-
-
-DOUBLES = Arithmetic[float](
-    float,
-    lambda: math.pi,
-    operator.truediv,
-    math.pow,
-    {name: abs if name == "abs" else getattr(math, name) for name in FUNCTIONS},
-)
 
 
 def value_in_doubles(formula: Formula, parameters: Mapping[str, float]) -> float:

@@ -6,30 +6,25 @@ multipliers are variables without derivatives, and Modelica tools differentiate 
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from core.errors import NotApplicable
-from core.formulas import FUNCTIONS, NAMES_OF_FUNCTIONS, Arithmetic, Formula
+from core.formulas import NAMES_OF_FUNCTIONS, Node, names_of, value_of
+from core.formulas_in_doubles import DOUBLES
 from core.interchange.draft import LeftOut
 from core.multibody.equations_answer import SceneEquations
+from core.multibody.formulation.law_forces import MULTIPLIER
+from core.multibody.formulation.notation.modelica import RESERVED, modelica
+from core.multibody.language.motion_formulas import TIME
 from core.multibody.language.scene import Scene
 from core.multibody.solve import solve_scene
 
-IN_MODELICA = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "abs")
-"""Functions that Modelica has under the names of formulas, beside those of two arguments."""
-
-OF_TWO = ("atan2", "min", "max")
-"""Functions of two arguments that it has."""
-
-RESERVED = {"time", "der", "model", "end", "equation", "if", "then", "else", "and", "or", "not", "initial", "pi"}
-"""Words that no variable may be called."""
-
-FIRST_PHASE = "the model is of the first phase of the motion: what touches or is taut there stays so"
+MODEL = "Scene"
+"""What the model is called."""
 
 STEP = 1e-6
 """Share by which coordinates are moved to see how constraints depend on them: the cube root of a double's rounding."""
@@ -54,11 +49,13 @@ def export_modelica(scene: Scene) -> tuple[str, list[LeftOut]]:
     if equations is None:
         raise NotApplicable("mechanics leaves open how the motion begins: there are no equations of it")
     left_out = [
-        LeftOut(
-            "/connections/" + str(i), name, "the model is of the first phase: what touches or is taut stays so", True
-        )
+        LeftOut(f"/connections/{i}", name, f"the model is of the first phase: {why}", True)
         for name, (i, connection) in zip(scene.names(), scene.numbered(), strict=True)
-        if connection.one_sided
+        for applies, why in (
+            (connection.one_sided, "what touches or is taut stays so"),
+            (scene.switches_in(connection), "a formula of several pieces has the piece of the start"),
+        )
+        if applies
     ]
     return _Model(equations).text(), left_out
 
@@ -68,51 +65,42 @@ class _Model:
 
     def __init__(self, found: SceneEquations) -> None:
         self.found = found
-        multipliers = sorted(set(re.findall(r"lambda_\d+", " ".join(one.plain for one in found.equations))))
-        self.others = {
-            **{name: text for name, text in found.places.items() if name not in found.coordinates},
-            **{name: one.plain for name, one in found.forces.items()},
+        self.others: dict[str, Node] = {
+            **{name: node for name, node in found.places.items() if name not in found.coordinates},
+            **{name: one.sides[0] for name, one in found.forces.items()},
         }
-        self.multipliers = multipliers
+        occurring = {name for one in found.equations for side in one.sides for name in names_of(side)}
+        self.multipliers = sorted(name for name in occurring if name.startswith(MULTIPLIER))
         self.names: dict[str, str] = {}
         self.rates: dict[str, str] = {}
-        for name in (*found.coordinates, *found.constants, *multipliers, *self.others):
+        for name in (*found.coordinates, *found.constants, *self.multipliers, *self.others):
             self.names[name] = self._identifier(name)
         for name in found.coordinates:
             if found.start[name].rate is not None:
                 self.rates[name] = self._identifier(f"{name}.rate")
-        listed = sorted(self.names, key=len, reverse=True)
-        own = "|".join(re.escape(name) for name in listed)
-        words = r"(?P<word>[A-Za-z]\w*)"
-        self.pattern = re.compile(rf"(?<![\w.])(?:(?P<name>{own})(?![\w.])(?P<primes>'*)|{words})" if own else words)
 
     def _identifier(self, name: str) -> str:
         """Return a word of letters, digits and _ that nothing else is called."""
         plain = re.sub(r"\W", "_", name)
         found, k = plain, 2
-        taken = {*self.names.values(), *self.rates.values(), *RESERVED, *NAMES_OF_FUNCTIONS}
+        taken = {*self.names.values(), *self.rates.values(), *RESERVED, *NAMES_OF_FUNCTIONS, MODEL, "pi"}
         while found in taken:
             found, k = f"{plain}_{k}", k + 1
         return found
 
-    def written(self, text: str) -> str:
+    def written(self, node: Node) -> str:
         """Return a formula in Modelica."""
-        return self.pattern.sub(self._word, text)
+        return modelica(node, self._called)
 
-    def _word(self, match: re.Match[str]) -> str:
-        name = match.groupdict().get("name")
-        if name is None:
-            word = match.group("word")
-            if word == "t":
-                return "time"
-            if word not in (*IN_MODELICA, *OF_TWO, "pi", "e", "E"):
-                remedy = "write the law without pieces and tables"
-                raise NotApplicable(f"Modelica has no {word} as formulas have it", path=("format",), remedy=remedy)
-            return word
-        own, primes = self.names[name], len(match.group("primes"))
+    def _called(self, name: str) -> str:
+        """Return what stands for a name of an equation, of which each prime is a derivative by time."""
+        plain = name.rstrip("'")
+        primes = len(name) - len(plain)
+        if name == TIME and name not in self.names:
+            return "time"
+        own, rate = self.names[plain], self.rates.get(plain)
         if primes == 0:
             return own
-        rate = self.rates.get(name)
         if rate is None:
             return f"der({own})"
         return rate if primes == 1 else f"der({rate})"
@@ -121,7 +109,7 @@ class _Model:
         """Return the model."""
         found = self.found
         tied, tied_rates = self.tied()
-        lines = ["model Scene", '  "Equations of motion in SI units and radians"']
+        lines = [f"model {MODEL}", '  "Equations of motion in SI units and radians"']
         lines.append("  constant Real pi = 3.141592653589793;")
         lines += [f"  constant Real {self.names[name]} = {value!r};" for name, value in found.constants.items()]
         for name in found.coordinates:
@@ -134,41 +122,31 @@ class _Model:
         lines += [f"  Real {self.names[name]};" for name in (*self.multipliers, *self.others)]
         lines.append("equation")
         lines += [f"  der({self.names[name]}) = {rate};" for name, rate in self.rates.items()]
-        lines += [f"  {self.written(one.plain)};" for one in (*found.equations, *found.constraints)]
-        lines += [f"  {self.names[name]} = {self.written(text)};" for name, text in self.others.items()]
-        lines.append("end Scene;")
+        lines += [f"  {' = '.join(map(self.written, one.sides))};" for one in (*found.equations, *found.constraints)]
+        lines += [f"  {self.names[name]} = {self.written(node)};" for name, node in self.others.items()]
+        lines.append(f"end {MODEL};")
         return "\n".join(lines) + "\n"
 
     def tied(self) -> tuple[set[str], set[str]]:
         """Return as many coordinates and as many rates as constraints determine at the start."""
         names = list(self.rates)
-        values = {name: one.value for name, one in self.found.start.items()} | dict(self.found.constants) | {"t": 0.0}
+        values = {name: one.value for name, one in self.found.start.items()} | dict(self.found.constants) | {TIME: 0.0}
         primed = {f"{name}'": one.rate for name, one in self.found.start.items() if one.rate is not None}
-        start, texts = {**values, **primed}, [one.plain for one in self.found.constraints]
-        of_places, of_rates = (
-            [_left_side(text, [*start]) for text in texts if ("'" in text) is by] for by in (False, True)
-        )
+        start = {**values, **primed}
+        of_places, of_rates = list[Node](), list[Node]()
+        for one in self.found.constraints:
+            row = Node("-", inner=one.sides)
+            (of_rates if any(name.endswith("'") for name in names_of(row)) else of_places).append(row)
         places = [[_slope(row, start, name) for name in names] for row in of_places]
         rates = [*places, *([_slope(row, start, f"{name}'") for name in names] for row in of_rates)]
         return {names[k] for k in _pivots(places)}, {names[k] for k in _pivots(rates)}
 
 
-def _left_side(text: str, known: Sequence[str]) -> Callable[[Mapping[str, float]], float]:
-    """Return what a constraint holds at zero, as a function of coordinates and rates."""
-    # The grammar of formulas has names of letters, digits and points.
-    plain = {name: f"v{k}" for k, name in enumerate(known)}
-    listed = sorted(plain, key=len, reverse=True)
-    pattern = re.compile("|".join(rf"(?<![\w.]){re.escape(name)}(?![\w.'])" for name in listed))
-    left, _, right = text.partition(" = ")
-    renamed = pattern.sub(lambda match: plain[match.group()], f"({left}) - ({right})")
-    formula = Formula.read(renamed, list(plain.values()), (*FUNCTIONS, "atan2"))
-    return lambda values: float(formula.value({plain[name]: value for name, value in values.items()}, DOUBLES))
-
-
-def _slope(row: Callable[[Mapping[str, float]], float], start: Mapping[str, float], name: str) -> float:
+def _slope(row: Node, start: Mapping[str, float], name: str) -> float:
+    """Return the derivative of what a constraint holds at zero by a coordinate or rate."""
     step = STEP * max(1.0, abs(start[name]))
-    ahead, behind = ({**start, name: start[name] + way * step} for way in (1.0, -1.0))
-    return (row(ahead) - row(behind)) / (2 * step)
+    ahead, behind = (value_of(row, {**start, name: start[name] + way * step}, DOUBLES) for way in (1.0, -1.0))
+    return (ahead - behind) / (2 * step)
 
 
 def _pivots(rows: Sequence[Sequence[float]]) -> list[int]:
@@ -181,17 +159,3 @@ def _pivots(rows: Sequence[Sequence[float]]) -> list[int]:
         left = np.delete(left - np.outer(left[:, k] / left[i, k], left[i]), i, axis=0)
         left[:, chosen] = 0.0
     return chosen
-
-
-DOUBLES = Arithmetic[float](
-    float,
-    lambda: math.pi,
-    lambda one, other: one / other,
-    lambda one, other: one**other,
-    {
-        name: {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan}.get(name, getattr(np, name, abs))
-        for name in FUNCTIONS
-    }
-    | {"atan2": np.arctan2},
-)
-"""Formulas in doubles."""

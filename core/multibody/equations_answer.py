@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from core.formulas import Node
+
 
 @dataclass(frozen=True)
 class WrittenFormula:
@@ -15,11 +17,14 @@ class WrittenFormula:
     plain : str
         Text in the grammar of formulas, with a prime for each derivative by time.
     latex, mathml : str
+    sides : tuple of Node
+        The formula, or both sides of the equation.
     """
 
     plain: str
     latex: str
     mathml: str
+    sides: tuple[Node, ...]
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,7 @@ class SceneEquations:
     why : tuple of str
         Why these suffice, in sentences.
     degrees_of_freedom : int
-    places : mapping of str to str
+    places : mapping of str to Node
         Columns of bodies as formulas of the coordinates.
     constants : mapping of str to float
         Numbers of many digits that have a name in the formulas, and those of `let`.
@@ -118,7 +123,7 @@ class SceneEquations:
     start: Mapping[str, CoordinateAtStart]
     why: tuple[str, ...]
     degrees_of_freedom: int
-    places: Mapping[str, str]
+    places: Mapping[str, Node]
     constants: Mapping[str, float]
     equations: tuple[WrittenFormula, ...]
     constraints: tuple[WrittenFormula, ...]

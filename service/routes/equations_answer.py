@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import Field
 
 from core.multibody.equations_answer import SceneEquations as Written
 from core.multibody.equations_answer import WrittenFormula
+from core.multibody.formulation.notation.plain import plain
 from core.quantities import Unit
 from service.schemas import View, fields_of
 
@@ -89,19 +91,24 @@ class SceneEquations(View):
 def equations_fields(found: Written) -> dict[str, Any]:
     """Return the fields of written equations, formulas as objects."""
 
-    def shown(formulas: dict[str, WrittenFormula]) -> dict[str, Any]:
-        return {name: fields_of(one) for name, one in formulas.items()}
+    def shown(formulas: Mapping[str, WrittenFormula]) -> dict[str, Any]:
+        return {name: _notations(one) for name, one in formulas.items()}
 
     return fields_of(found) | {
         "start": {name: fields_of(one) for name, one in found.start.items()},
-        "equations": [fields_of(one) for one in found.equations],
-        "constraints": [fields_of(one) for one in found.constraints],
-        "forces": shown(dict(found.forces)),
-        "lagrangian": None if found.lagrangian is None else fields_of(found.lagrangian),
+        "places": {name: plain(node) for name, node in found.places.items()},
+        "equations": [_notations(one) for one in found.equations],
+        "constraints": [_notations(one) for one in found.constraints],
+        "forces": shown(found.forces),
+        "lagrangian": None if found.lagrangian is None else _notations(found.lagrangian),
         "conserved": [
-            {"name": one.name, "value": one.value, "error": one.error} | fields_of(one.formula)
+            {"name": one.name, "value": one.value, "error": one.error} | _notations(one.formula)
             for one in found.conserved
         ],
         "linear": [fields_of(one) for one in found.linear],
-        "closed_form": shown(dict(found.closed_form)),
+        "closed_form": shown(found.closed_form),
     }
+
+
+def _notations(one: WrittenFormula) -> dict[str, Any]:
+    return {"plain": one.plain, "latex": one.latex, "mathml": one.mathml}

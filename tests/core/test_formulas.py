@@ -11,10 +11,11 @@ from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.assessment.formulas import DOUBLES, Undefined, value_in_doubles
+from core.assessment.formulas import Undefined, value_in_doubles
 from core.balls import precision
 from core.errors import InvalidParameter
 from core.formulas import DEEPEST, FUNCTIONS, LONGEST_FORMULA, Formula
+from core.formulas_in_doubles import DOUBLES
 from core.multibody.language.numerals import BALLS
 
 NAMES = {"M": 2.0, "g": 9.81, "alpha": 0.5, "a_1": 3.0, "pi_2": 7.0}

@@ -27,28 +27,29 @@ class Constants:
 
     def plain(self, node: Node) -> str:
         """Return a formula as text."""
-        return plain(self._with_names(node))
+        return plain(self.named(node))
 
     def formula(self, node: Node) -> WrittenFormula:
         """Return a formula in every notation."""
-        named = self._with_names(node)
-        return WrittenFormula(plain(named), latex(named), mathml(named))
+        named = self.named(node)
+        return WrittenFormula(plain(named), latex(named), mathml(named), (named,))
 
     def equation(self, left: Node, right: Node) -> WrittenFormula:
         """Return an equation in every notation."""
-        sides = self._with_names(left), self._with_names(right)
-        return WrittenFormula(" = ".join(map(plain, sides)), " = ".join(map(latex, sides)), mathml(*sides))
+        sides = self.named(left), self.named(right)
+        return WrittenFormula(" = ".join(map(plain, sides)), " = ".join(map(latex, sides)), mathml(*sides), sides)
 
     def values(self, others: Mapping[str, float]) -> dict[str, float]:
         """Return the constants that have been named by now, after others."""
         return {**others, **{name: float(digits) for digits, name in self._named.items()}}
 
-    def _with_names(self, node: Node) -> Node:
+    def named(self, node: Node) -> Node:
+        """Return a formula with names for its numbers of many digits."""
         if node.kind == "number":
             # Of a client's formula, which may have any digits.
             text = digits_of(float(node.text))
             return Node("number", text) if is_short(text) else Node("name", self._name(text))
-        return Node(node.kind, node.text, tuple(self._with_names(inner) for inner in node.inner))
+        return Node(node.kind, node.text, tuple(self.named(inner) for inner in node.inner))
 
     def _name(self, digits: str) -> str:
         if digits not in self._named:

@@ -119,9 +119,12 @@ class Scene:
     @property
     def switches(self) -> bool:
         """Whether a formula may have several pieces."""
-        texts = [*self.let.values(), *(text for one in self.connections for text in one.formulas())]
+        return any(map(self.switches_in, self.connections))
+
+    def switches_in(self, connection: Connection) -> bool:
+        """Return whether a formula of a connection may have several pieces, by its functions or tables."""
         kinked = {*SWITCHING, *(name for name, value in self.let.items() if is_table(value))}
-        return any(kinked & names_in(text) for text in texts if isinstance(text, str))
+        return any(kinked & names_in(text) for text in connection.formulas() if isinstance(text, str))
 
     @property
     def continues(self) -> bool:

@@ -131,11 +131,38 @@ def test_a_model_of_contacts_is_one_of_the_first_phase() -> None:
 
 
 def test_names_that_modelica_has_are_no_variables() -> None:
+    """Keywords, the time and the model's own names, and two names that differ by a sign that Modelica does not have."""
+    names = ("block", "loop", "when", "parameter", "in", "time", "der", "Real", "Scene")
+    law = " + ".join(f"sin({name}*x)" for name in names)
     body = {"mass": 1, "at": [0, 0], "velocity": [1, 0]}
-    scene = {"bodies": {"x-y": body, "x_y": body}, "connections": [], "let": {}}
+    scene = {
+        "let": dict.fromkeys(names, 1.5),
+        "bodies": {"x-y": body, "x_y": body},
+        "connections": [{"kind": "force", "name": "f", "place": "x-y", "force": [law, 0]}],
+    }
     text, _ = export_modelica(scene_from(scene))
-    names = re.findall(r"Real (\w+)", text)
-    assert len(names) == len(set(names))
+    declared = re.findall(r"Real (\w+)", text)
+    assert len(declared) == len(set(declared))
+    assert {f"{name}_2" for name in names} <= set(declared)
+    assert not {*names} & {*declared}
+
+
+@pytest.mark.parametrize("law", ["if(x - 1, -x, 2)", "max(x - 1, -x)", "k(x)", "-m*sign(vx)"])
+def test_a_law_of_pieces_is_that_of_the_start_and_said_to_be(law: str) -> None:
+    """Also where its pieces are those of a table."""
+    forces = [
+        {"kind": "force", "name": name, "place": "b", "force": [text, 0]} for name, text in (("f", law), ("g", "x"))
+    ]
+    body = {"mass": 1, "at": [0.2, 0], "velocity": [1, 0]}
+    scene = {
+        "let": {"k": {"points": [[-1, 0], [0, 2], [3, 1]]}, "m": "abs(-2)"},
+        "bodies": {"b": body},
+        "connections": forces,
+    }
+    _, left_out = export_modelica(scene_from(scene))
+    assert [(one.at, one.why.rpartition(": ")[2]) for one in left_out] == [
+        ("/connections/0", "a formula of several pieces has the piece of the start")
+    ]
 
 
 def test_what_has_no_equations_or_functions_is_refused() -> None:

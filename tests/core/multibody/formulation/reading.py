@@ -15,6 +15,7 @@ import mpmath
 import numpy as np
 
 from core.multibody.equations_answer import SceneEquations
+from core.multibody.formulation.notation.plain import plain
 
 Number = mpmath.mpf
 ZERO = mpmath.mpf(0)
@@ -236,5 +237,5 @@ def solved(equations: SceneEquations, columns: Mapping[str, Jet], time: float = 
                 jets[name] = Jet(known.value, value)
             else:
                 jets[name] = Jet(known.value, known.rate, value)
-    places = {column: evaluated(text, jets) for column, text in equations.places.items()}
+    places = {column: evaluated(plain(node), jets) for column, node in equations.places.items()}
     return Solved(jets, places, rank, len(unknowns))

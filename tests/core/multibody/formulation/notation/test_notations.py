@@ -1,4 +1,4 @@
-"""Formulas in three notations, and text that is read back."""
+"""Formulas in four notations, and text that is read back."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from xml.etree import ElementTree
 
 import pytest
 
-from core.formulas import FUNCTIONS, Formula, Node
+from core.errors import NotApplicable
+from core.formulas import ARGUMENTS, FUNCTIONS, Formula, Node
 from core.multibody.formulation.notation.latex import latex
 from core.multibody.formulation.notation.mathml import mathml
+from core.multibody.formulation.notation.modelica import modelica
 from core.multibody.formulation.notation.plain import plain
 
 NAMES = ("a", "b", "c", "bob.x", "rod-2.angle")
@@ -59,3 +61,30 @@ def test_mathml_is_well_formed_and_has_every_name_and_number(text: str) -> None:
 
 def test_a_name_cannot_bring_elements_of_its_own() -> None:
     assert "<script" not in mathml(Node("name", "a<script>.x"))
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("a - -b", "a - (-b)"),
+        ("-a + b", "-a + b"),
+        ("a*-b", "a*(-b)"),
+        ("a^b^c", "a^(b^c)"),
+        ("(-a)^2", "(-a)^2"),
+        ("-a^2", "-a^2"),
+        ("a - (b + c)", "a - (b + c)"),
+        ("a/b/c", "a/b/c"),
+        ("atan2(a, -b)*pi", "atan2(a, -b)*pi"),
+        ("2*if(a, b, c)", "2*(if a > 0 then b else c)"),
+        ("bob.x + rod-2.angle", "bob_x + rod_2_angle"),
+    ],
+)
+def test_modelica_has_signs_before_the_first_term_alone_and_powers_of_two(text: str, written: str) -> None:
+    """Specification 3.6, appendix A.2.7: arithmetic_expression has one sign in front, factor one power."""
+    root = Formula.read(text, NAMES, (*FUNCTIONS, *ARGUMENTS)).root
+    assert modelica(root, lambda name: name.replace(".", "_").replace("-", "_")) == written
+
+
+def test_functions_that_modelica_does_not_have_are_refused() -> None:
+    with pytest.raises(NotApplicable, match="Modelica has no sn"):
+        modelica(Node("sn", inner=(Node("name", "t"), Node("number", "1"))), str)
