@@ -117,6 +117,16 @@ newest:
 	$(NEWEST)/bin/python -m pip list 2>/dev/null | grep -i uvicorn
 	$(NEWEST)/bin/python -m pytest -q -n 3 --dist worksteal
 
+# What is read and written of MJCF against MuJoCo itself, which is in this environment alone.
+.PHONY: mujoco
+MUJOCO := .venv-mujoco
+
+mujoco:
+	$(PYTHON) -m venv $(MUJOCO)
+	$(MUJOCO)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	$(MUJOCO)/bin/python -m pip install --quiet --disable-pip-version-check mujoco
+	$(MUJOCO)/bin/python -m pytest -q -n 2 -k mujoco tests/core/interchange
+
 # The pages in a real Chromium (Debian: apt-get install chromium), driven from an environment of its own.
 BROWSER := .venv-browser
 CHROMIUM := $(shell command -v chromium || command -v chromium-browser || command -v google-chrome)

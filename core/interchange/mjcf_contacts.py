@@ -16,7 +16,7 @@ from core.interchange.mjcf_geometry import SOLIDS, add_shape
 from core.interchange.xml_reading import Element, fault, numbers_in, shortened
 
 FRICTION = 1.0
-"""Coefficient of sliding of geometries that state none, as MuJoCo has it."""
+"""Coefficient of sliding of geometries and pairs that state none, and of a pair along its second axis likewise."""
 
 DIRECTIONS = 3
 """Dimensions of a contact (`condim`) where none are stated: 1 is without friction, 4 and 6 also resist turns."""
@@ -147,31 +147,31 @@ class ContactReading:
             add_shape(self.draft.bodies[name], other.element, self.compiler)
         own = fixed.frame @ self.compiler.frame(fixed.element)
         self.draft.contacts.append((name, own.origin, own.rotation[:, 2], self._friction(one)))
-        said = one.said if one.said.name == "pair" else other.element
-        soft = [word for word in OF_CONTACTS if states(said, word) or states(fixed.element, word)]
+        stated = [one.said] if one.said.name == "pair" else [fixed.element, other.element]
+        soft = [word for word in OF_CONTACTS if any(states(element, word) for element in stated)]
         if soft:
             self.draft.leave_out(one.said, f"contacts are rigid and begin where shapes meet, without {', '.join(soft)}")
         return True
 
     def _friction(self, one: _Touching) -> float:
-        """Return the coefficient of sliding: of the pair, of the geometry that comes first, or the larger one."""
-        geoms, said = [one.fixed.element, one.other.element], one.said
-        ranks = [_whole(geom, "priority", 0) for geom in geoms]
-        if ranks[0] != ranks[1]:
-            geoms = [geoms[int(np.argmax(ranks))]]
-        paired = said.name == "pair"
-        stated = [said] if paired and "condim" in said.attributes else geoms
-        directions = max(_whole(geom, "condim", DIRECTIONS) for geom in stated)
+        """Return the coefficient of sliding: of the pair, of the geometry of higher priority, or the larger one."""
+        stated, said = [one.fixed.element, one.other.element], one.said
+        ranks = [_whole(geom, "priority", 0) for geom in stated]
+        if said.name == "pair":
+            # MuJoCo asks the geometries of a pair for nothing.
+            stated = [said]
+        elif ranks[0] != ranks[1]:
+            stated = [stated[int(np.argmax(ranks))]]
+        directions = max(_whole(element, "condim", DIRECTIONS) for element in stated)
         if directions == 1:
             return 0.0
         if directions > DIRECTIONS:
             self.draft.leave_out(said, "friction against turning and rolling is not described")
-        stated = [said] if paired and "friction" in said.attributes else geoms
-        along = [numbers_in(geom, geom.get("friction", repr(FRICTION)), "friction", None) for geom in stated]
+        along = [numbers_in(element, element.get("friction", repr(FRICTION)), "friction", None) for element in stated]
         if not all(along):
             raise fault(said, "must have numbers in friction")
-        if paired and len(along[0]) > 1 and stated == [said] and along[0][0] != along[0][1]:
-            self.draft.leave_out(said, "of its two coefficients of friction the first is taken in all directions")
+        if said.name == "pair" and [*along[0], FRICTION][:2] != [along[0][0]] * 2:
+            self.draft.leave_out(said, "of its coefficients along two axes the first is taken in all directions")
         return max(numbers[0] for numbers in along)
 
 

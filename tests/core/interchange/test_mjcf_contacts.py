@@ -25,9 +25,40 @@ def test_a_ball_above_a_plane_touches_it_and_others_are_left_out() -> None:
     assert [(one.at, one.what) for one in found.left_out] == [(3, "geom"), (4, "motor")]
 
 
+def text(plane: str, ball: str, more: str = "") -> str:
+    return f"""<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" {plane}/>
+<body name="a" pos="0 0 0.1"><freejoint/><geom name="ball" size="0.1" {ball}/></body></worldbody>{more}</mujoco>"""
+
+
 def model(plane: str, ball: str, more: str = "") -> ImportedModel:
-    return import_model(f"""<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" {plane}/>
-<body name="a" pos="0 0 0.1"><freejoint/><geom name="ball" size="0.1" {ball}/></body></worldbody>{more}</mujoco>""")
+    return import_model(text(plane, ball, more))
+
+
+RULES = (
+    *(("", ""), ("", 'contype="0"'), ("", 'contype="0" conaffinity="2"'), ('condim="1"', 'condim="1"')),
+    *(('contype="2" conaffinity="4"', 'contype="4" conaffinity="0"'), ('condim="1" priority="1"', 'friction="0.7"')),
+    *(('contype="2" conaffinity="0"', 'contype="2" conaffinity="0"'), ('condim="1"', 'friction="0.7"')),
+)
+PAIRS = ('friction="0.4 0.4"', 'condim="1"', "")
+
+
+@pytest.mark.parametrize(
+    ("plane", "ball", "more"),
+    [
+        *((*rule, "") for rule in RULES),
+        *((*RULES[0], f'<contact><pair geom1="ball" geom2="floor" {said}/></contact>') for said in PAIRS),
+        *((*RULES[4], f'<contact><pair geom1="ball" geom2="floor" {said}/></contact>') for said in PAIRS),
+        (*RULES[0], '<contact><exclude body1="world" body2="a"/></contact>'),
+    ],
+)
+def test_what_touches_and_how_it_rubs_is_that_of_mujoco(plane: str, ball: str, more: str) -> None:
+    """MuJoCo finds a contact of what lies 1e-4 m deep."""
+    mujoco = pytest.importorskip("mujoco")
+    read = mujoco.MjModel.from_xml_string(text(plane, ball, more).replace('pos="0 0 0.1"', 'pos="0 0 0.0999"'))
+    data = mujoco.MjData(read)
+    mujoco.mj_forward(read, data)
+    theirs = [0.0 if one.dim == 1 else float(one.friction[0]) for one in data.contact]
+    assert [one["friction"] for one in contacts(model(plane, ball, more))] == theirs
 
 
 def contacts(found: ImportedModel) -> list[dict[str, Any]]:
@@ -69,13 +100,20 @@ def test_geometries_rub_by_the_one_of_higher_priority_or_the_rougher(plane: str,
 
 @pytest.mark.parametrize(
     ("said", "friction"),
-    [('friction="0.4 0.4"', 0.4), ('condim="1"', 0.0), ('condim="1" friction="0.4 0.4"', 0.0), ("", 0.6)],
+    [('friction="0.4 0.4"', 0.4), ('condim="1"', 0.0), ('condim="1" friction="0.4 0.4"', 0.0), ("", 1.0)],
 )
 def test_a_pair_touches_whatever_the_bits_and_once(said: str, friction: float) -> None:
     pair = f'<contact><pair geom1="ball" geom2="floor" {said}/></contact>'
     for bits in ('contype="0" conaffinity="0"', ""):
         [one] = contacts(model('friction="0.6"', f'friction="0.5" {bits}', pair))
         assert one["friction"] == friction
+
+
+def test_a_pair_that_rubs_otherwise_along_its_second_axis_says_so() -> None:
+    """One number leaves 1 for the second."""
+    for said, told in (('friction="0.4"', True), ('friction="0.4 0.3"', True), ('friction="0.4 0.4 7"', False)):
+        found = model("", "", f'<contact><pair geom1="ball" geom2="floor" {said}/></contact>')
+        assert [one.why.startswith("of its coefficients") for one in found.left_out] == [True] * told
 
 
 def test_bodies_that_are_excluded_do_not_touch() -> None:
