@@ -124,7 +124,7 @@ MUJOCO := .venv-mujoco
 mujoco:
 	$(PYTHON) -m venv $(MUJOCO)
 	$(MUJOCO)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
-	$(MUJOCO)/bin/python -m pip install --quiet --disable-pip-version-check mujoco
+	$(MUJOCO)/bin/python -m pip install --quiet --disable-pip-version-check "$$(grep ^mujoco benchmarks/peers.txt)"
 	$(MUJOCO)/bin/python -m pytest -q -n 2 -k mujoco tests/core/interchange
 
 # The pages in a real Chromium (Debian: apt-get install chromium), driven from an environment of its own.

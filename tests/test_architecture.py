@@ -296,7 +296,8 @@ TESTED_IN |= {
     f"core/interchange/{name}.py": f"core/interchange/{through}.py"
     for through, names in {
         "test_export_mjcf": "mjcf_geometries mjcf_tree start_in_numbers",
-        "test_import_model": "draft plane_scene_writing scene_of_draft scene_writing",
+        "test_import_model": "draft left_out plane_scene_writing scene_of_draft scene_writing",
+        "test_urdf": "inertia",
         "test_mjcf": "mjcf_attributes mjcf_elements mjcf_geometry mjcf_joints",
     }.items()
     for name in names.split()

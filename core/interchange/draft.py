@@ -10,6 +10,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.interchange.frames import Frame
+from core.interchange.left_out import LeftOutOfFile
 from core.interchange.xml_reading import Element
 
 JointKind = Literal[
@@ -28,31 +29,11 @@ JointKind = Literal[
 ]
 """How a body may move relative to its parent, from which it is free without a joint: a hinge turns about its axis, a
 slide moves along it; `on-line` and `on-plane` are a point of the body on a line or plane, about which it turns freely;
-a particle moves and does not turn. The last three are of a plane."""
+a particle moves and does not turn. `planar` are two slides and a turn in their plane, `planar-particle` two slides
+alone; `hinge-on-line` is a point of the body on a line, about which it turns across that."""
 
 OF_THE_PLANE = ("planar", "hinge-on-line")
 """Joints that only a scene of the plane has."""
-
-
-@dataclass(frozen=True)
-class LeftOut:
-    """Something that a scene does not say, or that a file cannot.
-
-    Attributes
-    ----------
-    at : int or str
-        Line of the document from 1, or the JSON pointer of a part of the scene.
-    what : str
-        The element or part.
-    why : str
-    changes_motion : bool
-        Whether the motion may be another without it.
-    """
-
-    at: int | str
-    what: str
-    why: str
-    changes_motion: bool
 
 
 @dataclass
@@ -142,13 +123,32 @@ class DraftConnection:
     name : str
     places : mapping of str to place, or list of places
         By the field of the connection.
-    rest : dict
-        The fields that are no places, and the kind.
+    fields : dict
+        Those that are no places, and the kind.
     """
 
     name: str
     places: dict[str, Ended | list[Ended]]
-    rest: dict[str, Any]
+    fields: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class DraftContact:
+    """A fixed plane that a body with a shape may touch.
+
+    Attributes
+    ----------
+    body : str
+    at, normal : ndarray, shape (3,)
+        A point of the plane, and its free side (m).
+    friction : float
+        Coefficient of sliding.
+    """
+
+    body: str
+    at: Floats
+    normal: Floats
+    friction: float
 
 
 @dataclass
@@ -161,9 +161,8 @@ class Draft:
     bodies : dict of str to DraftBody
     joints : list of DraftJoint
     connections : list of DraftConnection
-    contacts : list of (body, point, normal, friction)
-        Fixed planes that bodies with a shape may touch.
-    left_out : list of LeftOut
+    contacts : list of DraftContact
+    left_out : list of LeftOutOfFile
     moves : bool
         Whether velocities are given.
     """
@@ -172,8 +171,8 @@ class Draft:
     bodies: dict[str, DraftBody] = field(default_factory=dict)
     joints: list[DraftJoint] = field(default_factory=list)
     connections: list[DraftConnection] = field(default_factory=list)
-    contacts: list[tuple[str, Floats, Floats, float]] = field(default_factory=list)
-    left_out: list[LeftOut] = field(default_factory=list)
+    contacts: list[DraftContact] = field(default_factory=list)
+    left_out: list[LeftOutOfFile] = field(default_factory=list)
     moves: bool = False
 
     def carrier(self, name: str | None) -> str | None:
@@ -191,4 +190,4 @@ class Draft:
         """Say that an element is not taken."""
         name = element.get("name")
         what = f"{element.name} {name}" if name else element.name
-        self.left_out.append(LeftOut(element.line, what[:100], why, changes_motion))
+        self.left_out.append(LeftOutOfFile(element.line, what[:100], why, changes_motion))

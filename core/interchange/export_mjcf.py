@@ -16,8 +16,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from core.errors import InvalidParameter, Path, pointer_of
-from core.interchange.draft import LeftOut
 from core.interchange.frames import as_quaternion, axes_from
+from core.interchange.left_out import LeftOutOfScene
 from core.interchange.mjcf_geometries import Geometries, numbers_of
 from core.interchange.mjcf_tree import Tree, TreeBody, rates_of
 from core.interchange.start_in_numbers import NumericScene
@@ -41,7 +41,7 @@ WRITTEN = {
 """Fields of connections that are written, or whose connection is left out as a whole."""
 
 
-def export_mjcf(scene: Scene) -> tuple[str, list[LeftOut]]:
+def export_mjcf(scene: Scene) -> tuple[str, list[LeftOutOfScene]]:
     """Return a scene as the text of an MJCF document, and what it leaves out.
 
     Raises
@@ -62,7 +62,7 @@ class _Writing:
 
     def __init__(self, numbers: NumericScene) -> None:
         self.numbers, self.tree = numbers, Tree(numbers)
-        self.left_out: list[LeftOut] = []
+        self.left_out: list[LeftOutOfScene] = []
         self.surroundings = Surroundings(numbers.scene.bodies, numbers.numerals, numbers.plane)
         self.root = ElementTree.Element("mujoco", model="scene")
         self._add(self.root, "compiler", angle="radian", inertiafromgeom="false")
@@ -114,7 +114,7 @@ class _Writing:
         return ElementTree.SubElement(parent, tag, {name.rstrip("_"): value for name, value in attributes.items()})
 
     def leave_out(self, path: Path, what: str, why: str, *, changes_motion: bool = True) -> None:
-        self.left_out.append(LeftOut(pointer_of(path), what, why, changes_motion))
+        self.left_out.append(LeftOutOfScene(pointer_of(path), what, why, changes_motion))
 
     def _body(self, body: TreeBody) -> None:
         own = self.numbers.bodies[body.name]

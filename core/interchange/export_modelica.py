@@ -15,7 +15,7 @@ import numpy as np
 from core.errors import NotApplicable
 from core.formulas import NAMES_OF_FUNCTIONS, Node, names_of, value_of
 from core.formulas_in_doubles import DOUBLES
-from core.interchange.draft import LeftOut
+from core.interchange.left_out import LeftOutOfScene
 from core.multibody.equations_answer import SceneEquations
 from core.multibody.formulation.law_forces import MULTIPLIER
 from core.multibody.formulation.notation.modelica import RESERVED, modelica
@@ -33,7 +33,7 @@ RANK = 1e-7
 """Share of the largest derivative below which one of a constraint is none: what `STEP` leaves of rounding."""
 
 
-def export_modelica(scene: Scene) -> tuple[str, list[LeftOut]]:
+def export_modelica(scene: Scene) -> tuple[str, list[LeftOutOfScene]]:
     """Return a scene as the text of a Modelica model, and what it leaves out.
 
     Raises
@@ -49,7 +49,7 @@ def export_modelica(scene: Scene) -> tuple[str, list[LeftOut]]:
     if equations is None:
         raise NotApplicable("mechanics leaves open how the motion begins: there are no equations of it")
     left_out = [
-        LeftOut(f"/connections/{i}", name, f"the model is of the first phase: {why}", True)
+        LeftOutOfScene(f"/connections/{i}", name, f"the model is of the first phase: {why}")
         for name, (i, connection) in zip(scene.names(), scene.numbered(), strict=True)
         for applies, why in (
             (connection.one_sided, "what touches or is taut stays so"),

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from core.errors import InvalidParameter
-from core.interchange.draft import Draft, LeftOut
+from core.interchange.draft import Draft
+from core.interchange.left_out import LeftOutOfFile
 from core.interchange.mjcf import read_mjcf
 from core.interchange.scene_of_draft import scene_of
 from core.interchange.sdf import read_sdf
@@ -35,13 +36,13 @@ class ImportedModel:
     format : str
     scene : dict
         Its description, as `POST /v1/scenes` takes it.
-    left_out : list of LeftOut
+    left_out : list of LeftOutOfFile
         In the order of the lines.
     """
 
     format: Format
     scene: dict[str, Any]
-    left_out: list[LeftOut]
+    left_out: list[LeftOutOfFile]
 
 
 def import_model(text: str) -> ImportedModel:
@@ -66,4 +67,4 @@ def import_model(text: str) -> ImportedModel:
     scene = scene_of(draft)
     # A scene that cannot be is refused here, where its file is at hand.
     scene_from(scene)
-    return ImportedModel(name, scene, sorted(draft.left_out, key=lambda one: one.at))
+    return ImportedModel(name, scene, sorted(draft.left_out, key=lambda one: one.line))

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from core.interchange.draft import Draft
+from core.interchange.draft import Draft, DraftContact
 from core.interchange.frames import Frame
 from core.interchange.mjcf_attributes import OF_CONTACTS, leave_out_unread, states
 from core.interchange.mjcf_elements import MAIN, Compiler
@@ -146,7 +146,7 @@ class ContactReading:
         if self.draft.bodies[name].shape is None:
             add_shape(self.draft.bodies[name], other.element, self.compiler)
         own = fixed.frame @ self.compiler.frame(fixed.element)
-        self.draft.contacts.append((name, own.origin, own.rotation[:, 2], self._friction(one)))
+        self.draft.contacts.append(DraftContact(name, own.origin, own.rotation[:, 2], self._friction(one)))
         stated = [one.said] if one.said.name == "pair" else [fixed.element, other.element]
         soft = [word for word in OF_CONTACTS if any(states(element, word) for element in stated)]
         if soft:

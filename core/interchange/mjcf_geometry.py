@@ -12,8 +12,8 @@ from core.bodies.composite import Composite, Part
 from core.bodies.solids import Ball, Capsule, Cuboid, Cylinder, Ellipsoid
 from core.interchange.draft import DraftBody
 from core.interchange.frames import Frame, as_quaternion, vector
+from core.interchange.inertia import COMPONENTS, inertia_tensor
 from core.interchange.mjcf_elements import Compiler, sizes
-from core.interchange.urdf import inertia_tensor
 from core.interchange.xml_reading import Element, fault, shortened
 
 WATER = 1000.0
@@ -30,9 +30,8 @@ def add_inertia(body: DraftBody, element: Element, geoms: Sequence[Element], com
         own = compiler.frame(inertial)
         body.mass, body.centre = inertial.number("mass"), own.origin
         if "fullinertia" in inertial.attributes:
-            names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-            given = dict(zip(names, inertial.numbers("fullinertia", 6), strict=True))
-            tensor = inertia_tensor(given)
+            given = dict(zip(COMPONENTS, inertial.numbers("fullinertia", 6), strict=True))
+            tensor = inertia_tensor(given.__getitem__)
         else:
             tensor = np.diag(inertial.numbers("diaginertia", 3))
         body.tensor = own.rotation @ tensor @ own.rotation.T

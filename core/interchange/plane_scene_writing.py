@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import InvalidParameter
 from core.interchange.draft import Draft, DraftBody, DraftJoint
 from core.interchange.scene_writing import SceneWriting, clean
-from core.interchange.xml_reading import DOCUMENT
+from core.interchange.xml_reading import no_model, shortened
 
 
 class PlaneSceneWriting(SceneWriting):
@@ -79,7 +78,5 @@ class PlaneSceneWriting(SceneWriting):
     def shape(self, body: DraftBody) -> dict[str, Any]:
         """See `SceneWriting.shape`."""
         if body.shape is None or body.shape["kind"] != "ball":
-            raise InvalidParameter(
-                DOCUMENT, f"have balls alone that touch in a plane; line {body.line} has another shape"
-            )
+            raise no_model(body.line, f"{shortened(body.name)} must be a ball to touch something in a plane")
         return {"kind": "disc", "radius": body.shape["radius"]}

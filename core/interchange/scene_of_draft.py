@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import InvalidParameter
 from core.interchange.draft import OF_THE_PLANE, Draft, DraftJoint
 from core.interchange.frames import PARALLEL, parallel
 from core.interchange.plane_scene_writing import PlaneSceneWriting
 from core.interchange.scene_writing import SceneWriting
-from core.interchange.xml_reading import DOCUMENT
+from core.interchange.xml_reading import no_model
 
 PLANES = ((2, (0, 1), 1.0), (1, (0, 2), -1.0), (0, (1, 2), 1.0))
 """Planes in which a model may move: the normal, which axes become x and y, the sign of turns about the normal."""
@@ -32,11 +31,8 @@ def scene_of(draft: Draft) -> dict[str, Any]:
         return SceneWriting(draft).scene()
     plane = next((plane for plane in PLANES if _holds_in(draft, plane[0])), None)
     if plane is None:
-        raise InvalidParameter(
-            DOCUMENT,
-            "be a model that can be read; "
-            f"line {special.line}: these joints are joints of a model in a plane of coordinate axes, which this is not",
-        )
+        said = "these joints are joints of a model in a plane of coordinate axes, which this is not"
+        raise no_model(special.line, said)
     return PlaneSceneWriting(draft, *plane).scene()
 
 
@@ -67,5 +63,5 @@ def _holds_in(draft: Draft, k: int) -> bool:
         and jointed == set(draft.bodies)
         and within(draft.gravity)
         and float(np.ptp(heights or [0.0])) < PARALLEL
-        and all(within(there) for _, _, there, _ in draft.contacts)
+        and all(within(contact.normal) for contact in draft.contacts)
     )

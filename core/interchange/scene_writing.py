@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import InvalidParameter
-from core.interchange.draft import Draft, DraftBody, DraftConnection, DraftJoint, Ended, LeftOut
-from core.interchange.xml_reading import DOCUMENT, shortened
+from core.interchange.draft import Draft, DraftBody, DraftConnection, DraftContact, DraftJoint, Ended
+from core.interchange.left_out import LeftOutOfFile
+from core.interchange.xml_reading import no_model, shortened
 from core.multibody.language.numerals import LONGEST_NAME
 from core.multibody.language.written import GROUND
 
@@ -53,11 +53,8 @@ class SceneWriting:
         for name in carried:
             body = self.draft.bodies[name]
             if not body.massive:
-                raise InvalidParameter(
-                    DOCUMENT,
-                    f"be a model that can be read; line {body.line}: {shortened(name)} moves and has no mass",
-                    remedy="give it a mass, or fix it to a body that has one",
-                )
+                remedy = "give it a mass, or fix it to a body that has one"
+                raise no_model(body.line, f"{shortened(name)} moves and has no mass", remedy)
             self.names[name] = self.named(name, "body")
             self.bodies[self.names[name]] = self.body(body)
         connections: list[dict[str, Any]] = []
@@ -65,7 +62,7 @@ class SceneWriting:
             if joint.child in self.names:
                 connections += self.joint(joint)
         connections += [self.connection(one) for one in self.draft.connections]
-        connections += [self.contact(*one) for one in self.draft.contacts]
+        connections += [self.contact(one) for one in self.draft.contacts]
         whole = [end for one in connections if _of_directions(one) for end in (one["a"], one["b"])]
         for joint in self.turnless:
             self.without_turn(joint, whole)
@@ -210,7 +207,7 @@ class SceneWriting:
         carries = any(other.parent == joint.child for other in self.draft.joints)
         if carries or name in whole or "places" in body or "shape" in body:
             self.draft.left_out.append(
-                LeftOut(joint.line, joint.name, "nothing holds its direction here: it may turn", changes_motion=True)
+                LeftOutOfFile(joint.line, joint.name, "nothing holds its direction here: it may turn")
             )
             return
         for field in ("moments", "tensor", "inertia", "axes", "angle", "angular_velocity"):
@@ -225,7 +222,7 @@ class SceneWriting:
         """Return the force of a spring and a damper along a slide on the ground."""
         if parent is not None:
             why = "there is no spring or damper along a slider between two bodies"
-            self.draft.left_out.append(LeftOut(joint.line, joint.name, why, changes_motion=True))
+            self.draft.left_out.append(LeftOutOfFile(joint.line, joint.name, why))
             return []
         axis, at = self.direction(joint.axes[0]), self.vector(joint.at)
         names = "xyz"[: len(axis)]
@@ -237,20 +234,20 @@ class SceneWriting:
 
     def connection(self, one: DraftConnection) -> dict[str, Any]:
         """Return a connection between places."""
-        name = self.named(one.name, one.rest["kind"])
+        name = self.named(one.name, one.fields["kind"])
         ends: dict[str, Any] = {}
         for field, places in one.places.items():
             listed = isinstance(places, list)
             found = [self.place(place, name) for place in (places if isinstance(places, list) else [places])]
             ends[field] = found if listed else found[0]
-        return {"name": name, **ends, **one.rest}
+        return {"name": name, **ends, **one.fields}
 
-    def contact(self, body: str, at: Floats, normal: Floats, friction: float) -> dict[str, Any]:
+    def contact(self, one: DraftContact) -> dict[str, Any]:
         """Return the contact of a body that has a shape with a fixed plane."""
         return {
             "kind": "contact",
-            "name": self.named(f"{body}-on-plane", "contact"),
-            "place": self.names[body],
-            "on": {"at": self.vector(at), "normal": self.direction(normal)},
-            "friction": friction,
+            "name": self.named(f"{one.body}-on-plane", "contact"),
+            "place": self.names[one.body],
+            "on": {"at": self.vector(one.at), "normal": self.direction(one.normal)},
+            "friction": one.friction,
         }

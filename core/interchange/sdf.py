@@ -8,7 +8,7 @@ import numpy as np
 
 from core.interchange.draft import Draft, DraftBody, DraftJoint, JointKind
 from core.interchange.frames import Frame, at, roll_pitch_yaw, vector
-from core.interchange.urdf import inertia_tensor
+from core.interchange.inertia import MOMENTS, inertia_tensor
 from core.interchange.xml_reading import Element, by_name, fault, numbers_in, shortened
 
 GRAVITY = (0.0, 0.0, -9.8)
@@ -102,10 +102,11 @@ class _Model:
         if inertial is not None:
             own = self.pose(inertial, at((0.0, 0.0, 0.0)))
             mass, centre = _number(inertial, "mass", 1.0), own.origin
-            inertia, names = inertial.first("inertia"), ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-            ones = {name: float(name in ("ixx", "iyy", "izz")) for name in names}
-            moments = ones if inertia is None else {name: _number(inertia, name, ones[name]) for name in names}
-            tensor = own.rotation @ inertia_tensor(moments) @ own.rotation.T
+            inertia = inertial.first("inertia")
+            tensor = np.eye(3)
+            if inertia is not None:
+                tensor = inertia_tensor(lambda name: _number(inertia, name, float(name in MOMENTS)))
+            tensor = own.rotation @ tensor @ own.rotation.T
         for child in link.children:
             if child.name == "collision":
                 self.draft.leave_out(child, "what touches is described by contacts of a scene")

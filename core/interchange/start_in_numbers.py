@@ -55,10 +55,6 @@ class NumericBody:
         """Return where in space a point of the body is."""
         return self.centre + self.rotation @ inside
 
-    def velocity_at(self, point: Floats) -> Floats:
-        """Return the velocity of the body at a point of space."""
-        return self.velocity + np.cross(self.turning, point - self.centre)
-
 
 REST = NumericBody(0.0, None, np.zeros(3), np.eye(3), np.zeros(3), np.zeros(3), {})
 """The ground, as if it were a body."""

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from core.arrays import Floats
 from core.interchange.draft import Draft, DraftBody, DraftJoint, JointKind
 from core.interchange.frames import Frame, at, roll_pitch_yaw, vector
+from core.interchange.inertia import MOMENTS, inertia_tensor
 from core.interchange.xml_reading import Element, by_name, fault, shortened
 
 GRAVITY = (0.0, 0.0, -9.81)
@@ -90,12 +90,6 @@ def _origin(element: Element) -> Frame:
     return at(origin.numbers("xyz", 3, (0.0, 0.0, 0.0)), roll_pitch_yaw(angles))
 
 
-def inertia_tensor(get: Mapping[str, float]) -> Floats:
-    """Return the tensor of six numbers `ixx` to `izz`."""
-    xx, xy, xz, yy, yz, zz = (get[name] for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
 def _body(link: Element, frame: Frame, draft: Draft) -> DraftBody:
     mass, centre, tensor = 0.0, np.zeros(3), np.zeros((3, 3))
     inertial = link.first("inertial")
@@ -106,9 +100,8 @@ def _body(link: Element, frame: Frame, draft: Draft) -> DraftBody:
         mass = 0.0 if element is None else element.number("value")
         inertia = inertial.first("inertia")
         if inertia is not None:
-            names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-            moments = {name: inertia.number(name, 0.0 if name in ("ixy", "ixz", "iyz") else None) for name in names}
-            tensor = own.rotation @ inertia_tensor(moments) @ own.rotation.T
+            tensor = inertia_tensor(lambda name: inertia.number(name, None if name in MOMENTS else 0.0))
+            tensor = own.rotation @ tensor @ own.rotation.T
     for child in link.children:
         if child.name == "collision":
             draft.leave_out(child, "what touches is described by contacts of a scene")

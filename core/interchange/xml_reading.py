@@ -124,9 +124,12 @@ def fault(element: Element, rule: str, remedy: str | None = None) -> InvalidPara
     """Return the fault of an element, which names its line."""
     name = element.get("name")
     called = f"<{element.name}>" + (f" {shortened(name)}" if name else "")
-    return InvalidParameter(
-        DOCUMENT, f"be a model that can be read; line {element.line}: {called} {rule}", remedy=remedy
-    )
+    return no_model(element.line, f"{called} {rule}", remedy)
+
+
+def no_model(line: int, said: str, remedy: str | None = None) -> InvalidParameter:
+    """Return the fault of a document that is no model, with the line that shows it."""
+    return InvalidParameter(DOCUMENT, f"be a model that can be read; line {line}: {said}", remedy=remedy)
 
 
 def read_xml(text: str) -> Element:

@@ -7,10 +7,10 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from core.interchange.draft import LeftOut
 from core.interchange.export_mjcf import export_mjcf
 from core.interchange.export_modelica import export_modelica
 from core.interchange.import_model import import_model
+from core.interchange.left_out import LeftOutOfScene as Unwritten
 from core.interchange.xml_reading import MOST_CHARACTERS
 from core.multibody.language.scene import Scene
 from core.systems.budget import Budget
@@ -71,7 +71,7 @@ class ExportAnswer(Envelope):
     left_out: list[LeftOutOfScene] = Field(description="What the document does not say, in the order of the scene.")
 
 
-EXPORTS: Mapping[str, Callable[[Scene], tuple[str, list[LeftOut]]]] = {
+EXPORTS: Mapping[str, Callable[[Scene], tuple[str, list[Unwritten]]]] = {
     "mjcf": export_mjcf,
     "modelica": export_modelica,
 }
@@ -80,15 +80,14 @@ EXPORTS: Mapping[str, Callable[[Scene], tuple[str, list[LeftOut]]]] = {
 def imported(question: ImportRequest, budget: Budget) -> Answer:
     """Answer which scene a document describes."""
     found = import_model(question.document)
-    left_out = [fields_of(one) for one in found.left_out]
-    listed = [{"line": one.pop("at"), **one} for one in left_out]
+    listed = [fields_of(one) for one in found.left_out]
     return {"format": found.format, "scene": found.scene, "left_out": listed, "warnings": []}
 
 
 def exported(question: ExportRequest, budget: Budget) -> Answer:
     """Answer which document describes a scene."""
     document, left_out = EXPORTS[question.format](question.scene())
-    listed = [{"pointer": one.pop("at"), **one} for one in map(fields_of, left_out)]
+    listed = [fields_of(one) for one in left_out]
     return {"format": question.format, "document": document, "left_out": listed, "warnings": []}
 
 

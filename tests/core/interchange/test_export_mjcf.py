@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.interchange.draft import LeftOut
 from core.interchange.export_mjcf import export_mjcf
+from core.interchange.left_out import LeftOutOfScene
 from core.multibody.language.reading import scene_from
 from core.multibody.language.scene import Scene
 from service.routes.scene_catalogue import scene_catalogue
@@ -46,7 +46,7 @@ def question(name: str) -> dict[str, Any]:
 
 
 @cache
-def exported(name: str) -> tuple[str, list[LeftOut]]:
+def exported(name: str) -> tuple[str, list[LeftOutOfScene]]:
     return export_mjcf(scene_from(question(name)))
 
 
@@ -102,7 +102,7 @@ def test_what_has_no_element_is_left_out_with_its_pointer() -> None:
         ],
     }
     _, left_out = export_mjcf(scene_from(scene))
-    assert [(one.at, one.what) for one in left_out] == [
+    assert [(one.pointer, one.what) for one in left_out] == [
         ("/connections/0", "s"),
         ("/connections/1", "k"),
         ("/connections/2", "f"),
@@ -121,7 +121,7 @@ def test_a_coefficient_of_sticking_beside_that_of_sliding_is_left_out() -> None:
         }
         text, left_out = export_mjcf(scene_from(scene))
         assert 'friction="0.2 0.2 0 0 0"' in text
-        assert ("/connections/0/friction/0" in [one.at for one in left_out]) is said
+        assert ("/connections/0/friction/0" in [one.pointer for one in left_out]) is said
 
 
 def test_names_and_numbers_are_those_of_the_scene() -> None:

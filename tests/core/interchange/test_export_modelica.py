@@ -127,7 +127,7 @@ def test_constraints_tie_what_is_not_fixed(name: str, free: int, free_rates: int
 
 def test_a_model_of_contacts_is_one_of_the_first_phase() -> None:
     _, left_out = export_modelica(scene_from(question("ladder-leaves-wall")))
-    assert [one.at for one in left_out] == ["/connections/0", "/connections/1"]
+    assert [one.pointer for one in left_out] == ["/connections/0", "/connections/1"]
 
 
 def test_names_that_modelica_has_are_no_variables() -> None:
@@ -160,7 +160,7 @@ def test_a_law_of_pieces_is_that_of_the_start_and_said_to_be(law: str) -> None:
         "connections": forces,
     }
     _, left_out = export_modelica(scene_from(scene))
-    assert [(one.at, one.why.rpartition(": ")[2]) for one in left_out] == [
+    assert [(one.pointer, one.why.rpartition(": ")[2]) for one in left_out] == [
         ("/connections/0", "a formula of several pieces has the piece of the start")
     ]
 

@@ -112,7 +112,7 @@ def test_a_body_of_slides_is_a_particle_unless_something_is_off_its_centre() -> 
 </worldbody><tendon><spatial stiffness="10"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
         found = import_model(text)
         assert ("moments" not in found.scene["bodies"]["b"]) is particle
-        assert [(one.at, one.why) for one in found.left_out] == (
+        assert [(one.line, one.why) for one in found.left_out] == (
             [] if particle else [(2, "nothing holds its direction here: it may turn")]
         )
 
@@ -122,7 +122,7 @@ def test_a_body_of_slides_that_touches_keeps_its_shape() -> None:
 <body name="b" pos="0 0 0.3">{SLIDES}<geom size="0.3"/></body></worldbody></mujoco>"""
     found, rates = imported(text)
     assert found.scene["bodies"]["b"]["shape"] == {"kind": "ball", "radius": 0.3}
-    assert [one.at for one in found.left_out] == [2]
+    assert [one.line for one in found.left_out] == [2]
     assert rates["b"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
 
 
@@ -152,7 +152,7 @@ INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
 )
 def test_attributes_that_nothing_reads_are_left_out_unless_they_say_nothing(inner: str, line: int, unread: str) -> None:
     left_out = import_model(f"<mujoco>{inner}</mujoco>").left_out
-    assert [(one.at, one.why) for one in left_out] == ([(line, f"not read of it: {unread}")] if unread else [])
+    assert [(one.line, one.why) for one in left_out] == ([(line, f"not read of it: {unread}")] if unread else [])
 
 
 @pytest.mark.parametrize(("setting", "mass"), [("auto", 1.0), ("false", 1.0), ("true", 4000 / 3 * math.pi)])

@@ -22,7 +22,7 @@ def test_a_ball_above_a_plane_touches_it_and_others_are_left_out() -> None:
     assert rates["a"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
     contacts = {one["place"]: one["friction"] for one in found.scene["connections"]}
     assert contacts == {"a": 0.7, "b": 1.0}
-    assert [(one.at, one.what) for one in found.left_out] == [(3, "geom"), (4, "motor")]
+    assert [(one.line, one.what) for one in found.left_out] == [(3, "geom"), (4, "motor")]
 
 
 def text(plane: str, ball: str, more: str = "") -> str:
@@ -128,12 +128,12 @@ def test_two_geometries_of_one_body_that_may_touch_are_left_out_and_one_whose_bi
 <body name="a" pos="0 0 0.1"><freejoint/>\n<geom size="0.1"/>\n<geom size="0.05" pos="0 0 0.3" {bits}/></body>
 </worldbody></mujoco>""")
         assert len(contacts(found)) == count
-        assert [one.at for one in found.left_out] == ([] if count else [3, 4])
+        assert [one.line for one in found.left_out] == ([] if count else [3, 4])
 
 
 def test_softness_and_friction_against_turning_are_left_out_where_something_touches() -> None:
     found = model("", 'margin="0.01" solref="0.1 1" condim="6"')
-    assert [(one.at, one.why.rpartition(" without ")[2]) for one in found.left_out] == [
+    assert [(one.line, one.why.rpartition(" without ")[2]) for one in found.left_out] == [
         (2, "friction against turning and rolling is not described"),
         (2, "solref, margin"),
     ]
@@ -147,7 +147,7 @@ def test_a_body_and_what_it_carries_do_not_touch() -> None:
     for last, lines in (("", []), (inner, [4])):
         middle = f'<body>\n<joint/>{inertial}<geom size="0.1"/>{last}</body>'
         text = f'<mujoco><worldbody><body>\n<joint/>{inertial}<geom size="0.1"/>{middle}</body></worldbody></mujoco>'
-        assert [one.at for one in import_model(text).left_out] == lines
+        assert [one.line for one in import_model(text).left_out] == lines
 
 
 @pytest.mark.parametrize(

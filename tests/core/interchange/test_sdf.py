@@ -67,7 +67,7 @@ def test_links_of_models_whose_names_join_alike_are_two_bodies() -> None:
 def test_what_is_left_out_is_said_line_by_line() -> None:
     joint = HINGE.replace("</axis>", "\n<limit><lower>-1</lower></limit></axis>")
     said = import_model(model(f"{joint}\n<plugin/>")).left_out
-    assert [(one.at, one.what) for one in said] == [(6, "limit"), (7, "plugin")]
+    assert [(one.line, one.what) for one in said] == [(6, "limit"), (7, "plugin")]
 
 
 @pytest.mark.parametrize(

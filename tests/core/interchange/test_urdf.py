@@ -65,7 +65,7 @@ def test_what_is_left_out_is_said_line_by_line() -> None:
     inner = f"{INERTIAL}\n<visual/>\n<collision/>"
     own = '<limit lower="-1" upper="1" effort="1" velocity="1"/>\n<dynamics friction="1"/>\n<mimic joint="q"/>'
     text = robot(inner, 'type="revolute"').replace("</joint>", f"{own}</joint>\n<transmission/>")
-    said = [(one.at, one.what, one.changes_motion) for one in import_model(text).left_out]
+    said = [(one.line, one.what, one.changes_motion) for one in import_model(text).left_out]
     assert said == [
         (5, "visual", False),
         (6, "collision", True),
