@@ -118,6 +118,19 @@ def evaluated(poly: Poly, at: Sequence[Ball] | Mapping[int, Ball]) -> Ball:
     return total
 
 
+def enclosed(poly: Poly, at: Sequence[Ball]) -> Ball:
+    """Return the values for coordinates within wide balls, formed about the middles of these.
+
+    As `evaluated`, the square of a difference would have the widths of squares of coordinates, however far the origin.
+    """
+    middle = [x.mid() for x in at]
+    away = [x - y for x, y in zip(at, middle, strict=True)]
+    total = evaluated(poly, middle)
+    for j, slope in gradient(poly).items():
+        total = total + evaluated(slope, middle) * away[j]
+    return total + evaluated({key: value for key, value in poly.items() if len(key) == 2}, away)
+
+
 def size(poly: Poly, at: Sequence[Ball]) -> Ball:
     """Return the sum of the magnitudes of the terms: what a residual is compared with."""
     total = ZERO
@@ -132,11 +145,13 @@ def size(poly: Poly, at: Sequence[Ball]) -> Ball:
 def change_by(poly: Poly, at: Sequence[Ball], sizes: Sequence[Ball]) -> Ball:
     """Return by how much a polynomial changes at most, to first order, where every coordinate changes by its size.
 
-    Of one of degree one its constant may change by itself, too. That of a quadratic is left out: the square of a
+    Of one of degree one its constant may change by as much, too. That of a quadratic is left out: the square of a
     distance far from the origin is a small difference of large terms, but no place is known worse for that.
     """
     if degree(poly) < 2:
-        return size(poly, sizes)
+        terms = size({key: value for key, value in poly.items() if key}, sizes)
+        found: Ball = terms + abs(poly[()]).min(terms) if () in poly else terms
+        return found
     return sum((abs(evaluated(slope, at) * sizes[j]) for j, slope in gradient(poly).items()), ZERO)
 
 

@@ -13,11 +13,12 @@ from core.multibody.contacts.projection import project
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.table.description import Described
 from core.multibody.table.facing import facing
+from core.multibody.table.scene_sizes import sizes
 from core.multibody.table.table import Row
 
 TOUCHING = 1e-9
-"""Relative change of coordinates by which a gap may be closed of what touches at the start; and rates, relative to
-their terms, below which it is at rest."""
+"""Change of coordinates, as a share of their sizes in the scene, by which a gap may be closed of what touches at the
+start; and rates, relative to their terms, below which it is at rest."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +51,15 @@ def assemble_contacts(base: Described) -> ContactStart:
     guides = [Row.held(one.whole or one.name, one.gap) for one in unilateral if one.opposite is not None]
     table.rows.extend(guides)
     moved = list(dict.fromkeys([*base.measures.coordinates.rounded, *assemble_places(table, paths)]))
-    unilateral[:] = facing(unilateral, table.q, table.v, TOUCHING)
+    rounding = [TOUCHING * x for x in sizes(table, table.q)]
+    unilateral[:] = facing(unilateral, table.q, table.v, rounding)
     touching = []
     for i, one in enumerate(unilateral):
-        gap, scale = evaluated(one.gap, table.q), change_by(one.gap, table.q, table.q)
+        gap = evaluated(one.gap, table.q)
         if one.facets and not one.region:
             # It is above an edge.
             continue
-        if is_zero(gap) or bool(abs(gap) < TOUCHING * scale):
+        if is_zero(gap) or bool(abs(gap) < change_by(one.gap, table.q, rounding)):
             touching.append(i)
             if not is_zero(gap):
                 moved.append(one.name)

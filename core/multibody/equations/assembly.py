@@ -12,6 +12,7 @@ from core.multibody.algebra.polynomials import ONE, ZERO, Ball, change_by, evalu
 from core.multibody.algebra.rank import Elimination, Line, independent
 from core.multibody.table.frames import Given
 from core.multibody.table.measures import CLOSE
+from core.multibody.table.scene_sizes import sizes
 from core.multibody.table.table import Row, Table
 
 CLOSE_RATE = 1e-9
@@ -59,26 +60,29 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
 
 
 def _extents(table: Table) -> list[Ball]:
-    """Return for every coordinate the size of the vector of which it is a component: that of a direction is one."""
+    """Return for every coordinate the size of the vector of which it is a component: that of a direction is one.
+
+    Lengths are those of the scene, and not distances from the origin.
+    """
     largest: dict[tuple[str, str], Ball] = {}
     owners = [(name.rpartition(".")[0] or name, unit) for name, unit in zip(table.names, table.units, strict=True)]
     for owner, q in zip(owners, table.q, strict=True):
         before: Ball = largest.get(owner, ONE if owner[1] == "1" else ZERO)
         largest[owner] = before.max(abs(q))
-    return [largest[owner] for owner in owners]
+    return sizes(table, [largest[owner] for owner in owners])
 
 
 def _newton(table: Table, paths: Mapping[str, Path]) -> None:
     # What follows from others keeps its tie to them to first order, and has its own value after every step.
     rows = [*(row for row in table.rows if row.measure is not None), *(one.row for one in table.follows)]
     extents = _extents(table)
-    sizes = [size(row.measure or {}, extents) for row in rows]
+    terms = [size(row.measure or {}, extents) for row in rows]
     for _ in range(_NEWTON_STEPS_OF_POSITIONS):
         table.q = [q.mid() for q in table.q]
         lines = [{j: x for j, x in row.line(table.q).items() if j not in table.timed} for row in rows]
         residuals = [evaluated(row.measure or {}, table.q) for row in rows]
         # Lines are known as well as the measures are met: rows that are redundant there differ by that much here.
-        missed = max((float(abs(x) / y) for x, y in zip(residuals, sizes, strict=True) if y > 0), default=0.0)
+        missed = max((float(abs(x) / y) for x, y in zip(residuals, terms, strict=True) if y > 0), default=0.0)
         chosen = independent(lines, _APART * missed)
         step = least_change(table, [lines[i] for i in chosen], [residuals[i] for i in chosen])
         table.q = _followed(table, [q - d for q, d in zip(table.q, step, strict=True)])

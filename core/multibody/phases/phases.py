@@ -85,7 +85,9 @@ class _TooWide(Exception):
 
 class _Run:
     def __init__(self, base: Described, end: float, *, last: bool) -> None:
-        self.base, self.end, self.last = base, end, last
+        self.base, self.last = base, last
+        # What has the double of the last time is asked for: a time is the decimal of which that is the nearest one.
+        self.end = arb(end) + math.ulp(end) / 2 if end > 0.0 else ZERO
         self.unilateral = base.measures.unilateral
         self.motion = PhaseMotion(base, self.unilateral)
         self.start = assemble_contacts(base)
@@ -403,7 +405,7 @@ class _Run:
 
     def _advance(self, phase: Phase) -> bool:
         """Go to the end of a phase; return whether anything comes after it."""
-        left = arb(self.end) - phase.start
+        left = self.end - phase.start
         if not left > 0:
             return False
         try:
@@ -469,7 +471,7 @@ class _Run:
             return False
         few = len(self.motion.events) >= MANY or rate_share(self.unilateral[group[0]], self.tracks) < SMALL
         listed = count >= (LATER_LISTED if few else LISTED)
-        found = recurring(self.unilateral, group, phase, self.tracks, arb(self.end), listed=listed)
+        found = recurring(self.unilateral, group, phase, self.tracks, self.end, listed=listed)
         if found is None or not all(found.tail.keeps_sign(one.law, one.sign) for one in phase.arguments if one.sign):
             return False
         phase.end = phase.start + found.tail.length

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 from flint import arb, arb_mat
 
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, enclosed, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import (
     Forces,
     Responses,
@@ -319,12 +319,12 @@ def _alone(
     around = [_within(x, length * (abs(v) + y)) for x, v, y in zip(here, tail.v, change, strict=True)]
     rates = [_within(v, y) for v, y in zip(tail.v, change, strict=True)]
     for j, (one, state) in enumerate(zip(unilateral, phase.states, strict=True)):
-        if not all(evaluated(bound, around) > 0 for bound in one.region):
+        if not all(enclosed(bound, around) > 0 for bound in one.region):
             return False
         if j in group:
             continue
         if state is State.OPEN and one.opposite is None:
-            away = evaluated(one.gap, around) > 0
+            away = enclosed(one.gap, around) > 0
             if not (away or (gap_rate(one, around, rates) < 0 and _may_be_open(one, ends))):
                 return False
         if state.sense:

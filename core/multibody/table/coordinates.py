@@ -61,6 +61,7 @@ class Coordinates:
         """
         if not isinstance(place, str):
             fixed = self.numerals.vector(place, path, self.dimension)
+            self.table.places.append(fixed)
             return Point([constant(value) for value in fixed], None)
         body, _, spot = place.partition(".")
         frame = self.frames.get(body)
@@ -176,6 +177,7 @@ class Coordinates:
                     "a ball",
                     remedy='let its "places" touch, or describe it in the plane',
                 )
+        table.places += [where, [x + (frame.radius or ZERO) for x in where]]
         for spot, vector in body.places.items():
             frame.places[spot] = numerals.vector(vector, (*path, "places", spot), self.dimension)
         if body.velocity is not None:

@@ -18,12 +18,12 @@ from core.multibody.algebra.polynomials import (
     ZERO,
     Ball,
     Poly,
+    change_by,
     constant,
     coordinate,
     difference,
     evaluated,
     is_zero,
-    size,
 )
 from core.multibody.language.joints import GuideCurve
 from core.multibody.language.motion_formulas import TIME, MotionFormula, motion_formula
@@ -32,6 +32,7 @@ from core.multibody.table.formula_laws import of_number
 from core.multibody.table.formulas_of_time import FormulaRows, clock
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, COMPONENTS, Measures
+from core.multibody.table.scene_sizes import sizes
 
 PARAMETER = "u"
 """The name of the parameter of a curve."""
@@ -69,7 +70,8 @@ def on_surface(measures: Measures, name: str, connection: GuideCurve, path: Path
         own[axis] = coordinate(index)
     value = _rows(measures, name, formula, own, where)
     missed = evaluated(value, measures.table.q)
-    if not (measures.sketch or abs(missed) < CLOSE * (ONE + size(value, measures.table.q))):
+    meant = CLOSE * (ONE + change_by(value, measures.table.q, sizes(measures.table, measures.table.q)))
+    if not (measures.sketch or abs(missed) < meant):
         rule = f"be zero where the place starts, and not {as_text(missed, 10)}"
         raise PlacesDisagree(where, rule, remedy="change it, or move the bodies")
     measures.hold(name, value)

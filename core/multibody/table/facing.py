@@ -19,16 +19,16 @@ from core.multibody.table.connection_effects import Facet, Unilateral
 
 
 def facing(
-    unilateral: Sequence[Unilateral], q: Sequence[Ball], v: Sequence[Ball], share: float = 0.0
+    unilateral: Sequence[Unilateral], q: Sequence[Ball], v: Sequence[Ball], rounding: Sequence[Ball] = ()
 ) -> list[Unilateral]:
     """Return measures whose gaps are those of the facets that may be met from a state on.
 
     Parameters
     ----------
-    share : float
-        Values below this share of their terms are rounding, and zero.
+    rounding : sequence of ball
+        Of coordinates: values that are no larger than what these change are zero. None where all are exact.
     """
-    state, found = _State(q, v, share), []
+    state, found = _State(q, v, rounding), []
     for one in unilateral:
         if one.facets:
             facet, near = _nearest(one, state)
@@ -45,11 +45,11 @@ class _State:
 
     q: Sequence[Ball]
     v: Sequence[Ball]
-    share: float = 0.0
+    rounding: Sequence[Ball] = ()
 
     def value(self, poly: Poly) -> Ball:
         found = evaluated(poly, self.q)
-        rounded = self.share and bool(abs(found) < self.share * change_by(poly, self.q, self.q))
+        rounded = self.rounding and bool(abs(found) < change_by(poly, self.q, self.rounding))
         return ZERO if is_zero(found) or rounded else found
 
     def rate(self, poly: Poly) -> Ball:

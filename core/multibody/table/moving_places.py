@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.errors import InvalidParameter, Path
-from core.multibody.algebra.polynomials import degree
+from core.multibody.algebra.polynomials import degree, evaluated
 from core.multibody.language.connection import TwoEnded
 from core.multibody.language.written import GROUND
 from core.multibody.table.connection_effects import WorkTerm
@@ -20,7 +20,9 @@ def place_of(measures: Measures, name: str, place: object, path: Path) -> Point:
         raise InvalidParameter(path, "be a place: of the ground, its coordinates")
     if isinstance(place, str) or not isinstance(place, Sequence) or len(place) != measures.dimension:
         return measures.coordinates.point(place, path)
-    return Point([driven(measures, name, value, (*path, i)) for i, value in enumerate(place)], None)
+    at = [driven(measures, name, value, (*path, i)) for i, value in enumerate(place)]
+    measures.table.places.append([evaluated(x, measures.table.q) for x in at])
+    return Point(at, None)
 
 
 def ends_of(connection: TwoEnded, measures: Measures, name: str, path: Path) -> tuple[Point, Point]:

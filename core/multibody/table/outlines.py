@@ -24,18 +24,19 @@ from core.multibody.algebra.polynomials import (
     ZERO,
     Ball,
     Poly,
+    change_by,
     combined,
     constant,
     difference,
     dot,
     evaluated,
     is_zero,
-    size,
 )
 from core.multibody.table.connection_effects import Facet, Unilateral
 from core.multibody.table.contact_places import Side
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
+from core.multibody.table.scene_sizes import sizes
 from core.multibody.table.touching_in_plane import circle, face
 
 OVERLAP = 1e-9
@@ -135,7 +136,7 @@ def _require_apart(measures: Measures, a: Side, b: Side, name: str, path: Path) 
     if a.single or b.single:
         return
     q = measures.table.q
-    deepest, scale = None, ZERO
+    deepest, scale, extents = None, ZERO, sizes(measures.table, q)
     for one, other in ((a, b), (b, a)):
         for edge in _edges(one, path):
             # What has no width is parted by a line across its ends, too.
@@ -145,7 +146,7 @@ def _require_apart(measures: Measures, a: Side, b: Side, name: str, path: Path) 
                 start = one.points[edge.number] if direction is edge.normal else one.points[edge.number - 1]
                 heights = [dot(line, _apart(point, start)) for point in other.points]
                 least = min((evaluated(x, q) for x in heights), key=lambda x: float(x.mid()))
-                scale = max(scale, *(size(x, q) for x in heights), key=lambda x: float(x.mid()))
+                scale = max(scale, *(change_by(x, q, extents) for x in heights), key=lambda x: float(x.mid()))
                 if deepest is None or least > deepest:
                     deepest = least
     if deepest is not None and deepest < -OVERLAP * scale:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.balls import as_text
 from core.errors import InvalidParameter, Path, PlacesDisagree
 from core.formulas import UnknownName
-from core.multibody.algebra.polynomials import ONE, Poly, constant, difference, evaluated, size
+from core.multibody.algebra.polynomials import ONE, Poly, change_by, constant, difference, evaluated
 from core.multibody.language.joints import Relation
 from core.multibody.language.motion_formulas import MOTION_FUNCTIONS, TIME, TURNS, names_of_bodies
 from core.multibody.language.switches import SWITCHING
@@ -13,6 +13,7 @@ from core.multibody.table.formula_laws import formula_at, input_of
 from core.multibody.table.formulas_of_time import FormulaRows
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.rows import add_rows
+from core.multibody.table.scene_sizes import sizes
 
 _HELD = ("x", "y", "z", "angle", "turn")
 """Last parts of the names of what a relation holds: places and angles."""
@@ -27,7 +28,7 @@ def relation(connection: Relation, measures: Measures, name: str, path: Path) ->
         raise InvalidParameter((*path, "of"), 'name places or angles of bodies, such as "2*a.angle + 5*b.angle"')
     apart = difference(of, equals)
     missed, q = evaluated(apart, measures.table.q), measures.table.q
-    if not (measures.sketch or abs(missed) < CLOSE * (ONE + size(apart, q))):
+    if not (measures.sketch or abs(missed) < CLOSE * (ONE + change_by(apart, q, sizes(measures.table, q)))):
         rule = f"be {as_text(evaluated(of, q), 10)}, as the formula is at the start"
         raise PlacesDisagree((*path, "equals"), rule, remedy="change it, or move the bodies")
     row = measures.hold(name, apart)

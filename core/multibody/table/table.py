@@ -153,6 +153,8 @@ class Table:
         Coordinates that are functions of others, each of those before it.
     twins : list of (int, int)
         Coordinates that are the same function of time as others before them.
+    places : list of vectors
+        Centres and rims of bodies at the start, and places of the ground (m), as far as they are read.
     """
 
     names: list[str] = field(default_factory=list)
@@ -169,6 +171,7 @@ class Table:
     timed: set[int] = field(default_factory=set)
     follows: list[Following] = field(default_factory=list)
     twins: list[tuple[int, int]] = field(default_factory=list)
+    places: list[Sequence[Ball]] = field(default_factory=list)
 
     def independent_rows(self) -> list[int]:
         """Return the numbers of rows on which all others depend at the start, in order."""

@@ -8,13 +8,17 @@ from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.balls import precision
 from core.multibody.algebra.polynomials import (
+    BITS,
     Poly,
+    change_by,
     combined,
     constant,
     coordinate,
     degree,
     difference,
+    enclosed,
     evaluated,
     gradient,
     product,
@@ -78,3 +82,27 @@ def test_terms_that_cancel_are_dropped_whatever_their_rounding() -> None:
     assert (
         combined((third, coordinate(0)), (third, coordinate(0)), (third, coordinate(0)), (arb(-1), coordinate(0))) == {}
     )
+
+
+@given(st.lists(st.integers(-9, 9), min_size=2, max_size=2), st.sampled_from([0, 1000, 10**6, 10**9]))
+def test_values_within_wide_balls_hold_those_inside_and_are_as_wide_wherever_the_origin_is(
+    apart: list[int], origin: int
+) -> None:
+    """(x - y)^2 for x, y within 1/8 of places apart by n has values within n^2 +- (|n|/2 + 1/16)."""
+    first, second = origin + apart[0], origin + apart[1]
+    square = product(difference(coordinate(0), coordinate(1)), difference(coordinate(0), coordinate(1)))
+    with precision(BITS):
+        n, found = first - second, enclosed(square, [arb(first, 0.125), arb(second, 0.125)])
+    for dx in (-0.125, 0.0, 0.125):
+        for dy in (-0.125, 0.125):
+            assert found.contains(arb((n + dx - dy) ** 2))
+    # Terms of second order are not told to have one sign.
+    assert float(found.rad()) <= abs(n) / 2 + 1 / 16 + 1e-6
+
+
+def test_the_change_of_a_square_is_that_of_its_root_and_constants_change_as_much_as_the_rest() -> None:
+    x, y = coordinate(0), coordinate(1)
+    square, at, sizes = product(difference(x, y), difference(x, y)), [arb(1003), arb(1000)], [arb(2), arb(5)]
+    assert float(change_by(square, at, sizes)) == 6 * 2 + 6 * 5
+    assert float(change_by(difference(x, constant(arb(1000))), at, sizes)) == 2 + 2
+    assert float(change_by(difference(x, constant(arb(1))), at, sizes)) == 2 + 1

@@ -439,3 +439,14 @@ def test_bounces_end_where_it_is_not_known_whether_the_next_one_strikes(x: int) 
     assert np.asarray(place.values)[0] - [x, 0] == pytest.approx(
         [1.73096813790454, 0], abs=place.error + 2.0**-52 * abs(x) + 1e-14
     )
+
+
+@pytest.mark.parametrize("time", [0.1, 0.3, 0.6, 0.7, 2.3, 0.045])
+@pytest.mark.parametrize("later", [[], [5.0]])
+def test_a_time_that_is_the_decimal_of_an_event_is_after_it(time: float, later: list[float]) -> None:
+    """The doubles of 0.3, 0.6 and 2.3 are below the decimals: as the last time, they were before what happens then."""
+    wall = {"kind": "contact", "name": "wall", "place": "a", "on": {"at": [0, 0], "normal": [1, 0]}, "restitution": 0.5}
+    ball = {"mass": 1, "at": [time, 0], "velocity": [-1, 0]}
+    answer = solve_scene(read({"gravity": [0, 0], "bodies": {"a": ball}, "connections": [wall]}), [time, *later])
+    assert [(event.kind, event.time) for event in answer.events] == [("touch", time)]
+    assert np.asarray(column(answer, "a.velocity").values)[0, 0] == 0.5

@@ -104,7 +104,7 @@ def _events(expected: View, found: View) -> list[Difference]:
 
 
 def _compared(events: list[Event], until: float) -> list[Event]:
-    """Return the events before the motion ends in either answer, without the slightest impacts."""
+    """Return the events before the motion ends in either answer, without the slightest impacts and what they open."""
     largest = max((abs(event.impulse) for event in events), default=0.0)
     bounces: Counter[str] = Counter()
     first: list[Event] = []
@@ -112,11 +112,16 @@ def _compared(events: list[Event], until: float) -> list[Event]:
         bounces[event.name] = bounces[event.name] + 1 if event.kind in ("touch", "taut") else 0
         if bounces[event.name] <= COMPARED_BOUNCES:
             first.append(event)
-    return [
-        event
-        for event in first
-        if event.time < until * (1.0 - SAME_TIME) and not 0.0 < abs(event.impulse) <= SLIGHT * largest
-    ]
+    slight = {event.time for event in events if 0.0 < abs(event.impulse) <= SLIGHT * largest}
+    names = {event.name for event in events if event.time in slight and event.kind in ("touch", "taut")}
+    began = min(slight, default=np.inf)
+
+    def told(event: Event) -> bool:
+        # Which of those that bounce in turn is the last one, without an impulse, depends on how many are listed.
+        last = event.kind in ("touch", "taut") and event.name in names and event.time >= began
+        return abs(event.impulse) > SLIGHT * largest or not (event.time in slight or last)
+
+    return [event for event in first if event.time < until * (1.0 - SAME_TIME) and told(event)]
 
 
 def _ends(expected: View, found: View) -> list[Difference]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -53,6 +54,12 @@ def without_search(request: Json) -> Json:
 def without_law(request: Json) -> Json:
     """Return a request without the law by formula that was added to it."""
     return {**request, "connections": [one for one in request.get("connections", ()) if one.get("name") != "formula"]}
+
+
+def by_its_motion(request: Json) -> bool:
+    """Return whether a force is a formula of the components or the speed of its place, which no relation rewrites."""
+    forces = [one["force"] for one in request.get("connections", ()) if one["kind"] == "force" and "force" in one]
+    return any(re.search(r"\b(speed|v?[xyz])\b", str(x)) for force in forces for x in force)
 
 
 RANDOM: tuple[Callable[[int], Any], ...] = (

@@ -221,10 +221,12 @@ def test_what_starts_apart_by_rounding_touches_and_is_told() -> None:
         "connections": [{"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, 0], "slope": 0}}],
     }
     answer = solve_scene(read(scene))
-    # A gap that is all of its own terms is no rounding.
+    # A gap that is all there is of lengths is no rounding, however far from the origin.
     assert states(answer) == [{"floor": "open"}]
     scene["bodies"]["p"]["at"] = [0, 1.000000000001]
     scene["connections"][0]["on"]["at"] = [0, 1]
+    assert states(solve_scene(read(scene))) == [{"floor": "open"}]
+    scene["connections"][0]["on"]["at"] = [1, 1]
     answer = solve_scene(read(scene))
     assert states(answer) == [{"floor": "closed"}]
     assert any("floor" in sentence for sentence in answer.model.noticed)
