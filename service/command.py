@@ -55,6 +55,7 @@ def parser() -> argparse.ArgumentParser:
     study.add_argument("--output", type=Path, required=True, help=f"ending in one of {', '.join(ENDINGS)}")
     address = f"http://127.0.0.1:{os.environ.get('POLHODE_PORT') or '8000'}"
     study.add_argument("--url", type=_address, default=address, help=f"of the service (default {address})")
+    study.add_argument("--key-file", type=Path, metavar="FILE", help="with the key, for a service that asks for one")
     study.set_defaults(run=_study)
     key = commands.add_parser("new-key", help="make a key for a client, and its line for keys_file")
     key.add_argument("name")
@@ -106,18 +107,19 @@ def _study(options: argparse.Namespace) -> None:
         sys.exit(f"the output must end in one of {', '.join(ENDINGS)}")
     if not options.output.parent.is_dir():
         sys.exit(f"{options.output}: there is no folder {options.output.parent}")
-    state = json.loads(_sent(f"{options.url}/v1/studies", body=_read(options.file)))
+    key = {} if options.key_file is None else {"Authorization": f"Bearer {_read(options.key_file).decode().strip()}"}
+    state = json.loads(_sent(f"{options.url}/v1/studies", key, body=_read(options.file)))
     address = f"{options.url}/v1/studies/{state['jobID']}"
     while state["status"] in ("accepted", "running"):
         sys.stderr.write(f"\r{state['status']}, {state.get('progress', 0)} %")
         sys.stderr.flush()
         time.sleep(POLLING)
-        state = json.loads(_sent(address))
+        state = json.loads(_sent(address, key))
     sys.stderr.write(f"\r{state['status']}       \n")
     if state["status"] != "successful":
         sys.exit(str(state.get("message", state["status"])))
     results = f"{address}/results{ENDINGS[options.output.suffix]}"
-    read = _sent(results)
+    read = _sent(results, key)
     try:
         options.output.write_bytes(read)
     except OSError as error:
@@ -138,11 +140,11 @@ def _read(file: Path) -> bytes:
         sys.exit(f"{file}: {error.strerror}")
 
 
-def _sent(url: str, *, body: bytes | None = None) -> bytes:
+def _sent(url: str, key: dict[str, str], *, body: bytes | None = None) -> bytes:
     """Return the response of a service; end with its problem, or with what keeps it from being reached."""
-    headers = {} if body is None else {"Content-Type": "application/json"}
+    declared = {} if body is None else {"Content-Type": "application/json"}
     try:
-        with urlopen(Request(url, body, headers), timeout=RESPONSE_TIMEOUT) as response:
+        with urlopen(Request(url, body, key | declared), timeout=RESPONSE_TIMEOUT) as response:
             read: bytes = response.read()
             return read
     except HTTPError as refused:

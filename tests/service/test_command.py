@@ -28,6 +28,9 @@ class PlayedService(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         study = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        if study == {"count": 6} and self.headers["Authorization"] != "Bearer secret":
+            self._write(401, {"title": "No key"})
+            return
         if study == {"count": 4}:
             self.send_error(502)
             return
@@ -36,7 +39,7 @@ class PlayedService(BaseHTTPRequestHandler):
             self.send_header("Content-Length", "100")
             self.end_headers()
             return
-        if study != {"count": 2}:
+        if study not in ({"count": 2}, {"count": 6}):
             self._write(422, {"title": "Invalid parameter", "detail": "count must be 2"})
             return
         type(self).states = ["running", "successful"]
@@ -44,7 +47,7 @@ class PlayedService(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         if "/results" in self.path:
-            self._write(200, {"path": self.path})
+            self._write(200, {"path": self.path, "key": self.headers["Authorization"]})
         else:
             self._write(200, {"jobID": "one", "status": self.states.pop(0), "progress": 50})
 
@@ -91,7 +94,18 @@ def test_runs_a_study(played: str, tmp_path: Path) -> None:
     file, output = tmp_path / "study.json", tmp_path / "results.parquet"
     file.write_text('{"count": 2}')
     main(["study", str(file), "--url", f"{played}/", "--output", str(output)])
-    assert json.loads(output.read_text()) == {"path": "/v1/studies/one/results.parquet"}
+    assert json.loads(output.read_text()) == {"path": "/v1/studies/one/results.parquet", "key": None}
+
+
+def test_a_study_is_sent_with_a_key(played: str, tmp_path: Path) -> None:
+    file, key, output = tmp_path / "study.json", tmp_path / "key", tmp_path / "results.json"
+    file.write_text('{"count": 6}')
+    key.write_text("secret\n")
+    command = ["study", str(file), "--url", played, "--output", str(output)]
+    with pytest.raises(SystemExit, match="No key"):
+        main(command)
+    main([*command, "--key-file", str(key)])
+    assert json.loads(output.read_text())["key"] == "Bearer secret"
 
 
 def test_shows_the_problem_of_a_study(played: str, tmp_path: Path) -> None:
