@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from core.errors import BudgetExceeded, InvalidParameter
+from core.errors import BudgetExceeded, InvalidParameter, Path
 from core.quantities import Time, Unit
 from core.systems.budget import Budget
 from core.systems.rounding import ROUND_TRIP
 from service import VERSION
+from service.requests.declared_units import unit_at
 from service.requests.layout import ARRAY, OBJECT
 
 SIGNATURE = {"source": "polhode", "version": VERSION}
@@ -57,6 +58,10 @@ class Request(BaseModel):
     """Base of every question: strict, closed and immutable."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, arbitrary_types_allowed=False)
+
+    def unit_of(self, path: Path) -> str | None:
+        """Return the unit in which the number at a path of the question is written, None where it is not known."""
+        return unit_at(type(self), path)
 
 
 class View(BaseModel):

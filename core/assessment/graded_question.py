@@ -29,6 +29,7 @@ from core.assessment.judged_formulas import ENOUGH
 from core.assessment.propagation import Propagation, numbers_of, relative_uncertainties
 from core.assessment.question_source import Source
 from core.assessment.stated_bounds import body_axis_of, bound_beside, distance_of
+from core.assessment.stated_units import unit_of
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.work import spend
@@ -118,6 +119,10 @@ class GradedQuestion:
         if path not in self._references:
             self._references[path] = self._made(path)
         return self._references[path]
+
+    def unit(self, path: Path) -> str:
+        """Return the unit of the figure at a path of the answer, "1" where none is stated."""
+        return self._unit(path, self.answer)
 
     def figures_in(self, path: Path) -> list[str]:
         """Return the fields of the object at a path of the answer that are figures, null ones last."""
@@ -236,12 +241,7 @@ class GradedQuestion:
         return self._stated(path, value, form_of(path, value, self._unit(path, self.answer)), self.answer)
 
     def _unit(self, path: Path, answer: Mapping[str, Any]) -> str:
-        for k in range(len(path) - 1, 0, -1):
-            # An entry of an array has the unit that stands beside the array.
-            beside = value_at(answer, (*path[:k], "unit"))
-            if isinstance(beside, str):
-                return beside
-        return self._source.unit_of_answer(path) or "1"
+        return unit_of(answer, path, self._source.unit_of_answer)
 
     def _stated(self, path: Path, value: Any, form: Form, answer: Mapping[str, Any]) -> Reference:
         if form == "choice":

@@ -98,6 +98,17 @@ class Evaluations:
         """Return the whole answer with some inputs."""
         return self._question(inputs).answer
 
+    def unit(self, k: int) -> str | None:
+        """Return the unit of the k-th figure, None where no answer has a number for it."""
+        figure = self.figures[k]
+        for inputs in [*reversed(self._recent), *self.samples]:
+            sample = self.samples.get(inputs)
+            if sample is not None and sample.values and isinstance(sample.values[k], float):
+                question = self._question(inputs)
+                place = figure.place(question.answer)
+                return question.unit(place) if figure.continuous and place is not None else "1"
+        return None
+
     def first_refusal(self) -> MechanicsError | None:
         """Return why the first of the questions that were refused was."""
         return next((sample.refused for sample in self.samples.values() if sample.refused is not None), None)

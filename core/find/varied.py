@@ -35,6 +35,8 @@ class Varied:
         Ends of the range, both possible, in the unit of the number as it stands in the request.
     scale : {"linear", "log"}
         In which samples are evenly spaced.
+    unit : str or None
+        Of the number as it stands in the request, None where it is not known.
     """
 
     pointer: str
@@ -42,6 +44,7 @@ class Varied:
     least: float
     most: float
     scale: Scale = "linear"
+    unit: str | None = None
 
     def __post_init__(self) -> None:
         for i, end in enumerate((self.least, self.most)):

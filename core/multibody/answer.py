@@ -300,6 +300,9 @@ class RestRange:
     ----------
     vary : str
         JSON pointer of the number.
+    unit : str or None
+        In which it is written, and in which the ends of the range are; None where that is not known, as of a
+        plain number of `let` that formulas use: it is in the SI unit of its use.
     written : float
         Its value in the scene.
     lower, upper : RestEnd or None
@@ -311,6 +314,7 @@ class RestRange:
     """
 
     vary: str
+    unit: str | None
     written: OwnUnit
     lower: RestEnd | None
     upper: RestEnd | None

@@ -27,6 +27,7 @@ from core.multibody.language.reading import scene_from, unknown_field
 from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
 from core.multibody.language.units import LONGEST_UNIT
 from core.multibody.language.written import Number
+from core.multibody.language.written_units import unit_at
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
 from core.multibody.statics.thresholds import RestOf
 from core.multibody.trajectory.occurrences import MOST_FOUND, ExtremesOf, When
@@ -234,6 +235,10 @@ class SceneDescription(Request):
         written = ("gravity", "connections", "let", "outputs")
         read = {name: document[name] for name in written if document.get(name) is not None}
         return self.model_copy(update={**read, "bodies": bodies})
+
+    def unit_of(self, path: Path) -> str | None:
+        """Return the unit of a number as it is written; see `Request.unit_of`."""
+        return super().unit_of(path) or (unit_at(self.scene(), path) if path[0] in SCENE_FIELDS else None)
 
     def scene(self) -> Scene:
         """Return the scene, or raise `InvalidParameter`."""

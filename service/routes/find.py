@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from core.assessment.graded_question import GradedQuestion
+from core.assessment.stated_units import OF_THE_FIGURE, OF_THE_INPUT
 from core.errors import InvalidParameter, MechanicsError, pointer_of
 from core.find.search import found
 from core.find.solutions import Family, Findings, Nearest, Solution
@@ -16,16 +17,16 @@ from core.notices import Notice
 from core.quantities import Unit
 from core.systems.budget import Budget
 from service.routes.assessments.question_table import QuestionTable, within_question
-from service.routes.declared_units import unit_at
 from service.routes.find_questions import FindRequest, conditions_of, varied_of
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, View
 
 PATH = "/v1/find"
 
-OfInput = Annotated[float, Field(json_schema_extra={"x-unit": "as in the request at that pointer"})]
-"""No unit that claims could be converted to is declared: it is that of whatever the pointer leads to."""
-OfFigure = Annotated[float, Unit("as in the figure of the answer")]
+OfInput = Annotated[float, Unit(OF_THE_INPUT)]
+OfFigure = Annotated[float, Unit(OF_THE_FIGURE)]
+Found = Annotated[Any, Unit(OF_THE_FIGURE)]
+"""A number in that unit, a word or a truth value."""
 InputValues = dict[str, OfInput]
 
 
@@ -42,12 +43,12 @@ class FoundSolution(View):
         description="Of a root: 2 where the figure touches the value, 3 where it passes it without slope; else 1.",
         json_schema_extra={"x-unit": "1"},
     )
-    figure: Any = Field(
+    figure: Found = Field(
         description="The figure of the answer with these values, an array of several; null at borders and jumps."
     )
     figure_error: OfFigure | list[OfFigure] | None = Field(description="Bound of its error; null where it is null.")
-    below: Any = Field(default=None, description="The figure just below a border or a jump; null where there is none.")
-    above: Any = Field(default=None, description="The figure just above it.")
+    below: Found = Field(default=None, description="The figure just below a border or a jump; null without one.")
+    above: Found = Field(default=None, description="The figure just above it.")
     answer: dict[str, Any] | None = Field(default=None, description="Of the question, if answers were requested.")
 
 
@@ -55,7 +56,7 @@ class NearestMiss(View):
     """The inputs with which the conditions are missed by least."""
 
     values: InputValues
-    figure: Any = Field(description="The figure there, an array of several.")
+    figure: Found = Field(description="The figure there, an array of several.")
     figure_error: OfFigure | list[OfFigure] = Field(description="Bound of its error.")
 
 
@@ -86,7 +87,11 @@ class FindAnswer(Envelope):
     not_determined: list[NotDetermined] = Field(description="Families of values with all of which the condition holds.")
     evaluations: int = Field(description="How often the question was answered.", json_schema_extra={"x-unit": "1"})
     units: dict[str, str | None] = Field(
-        description="Declared units of the inputs, by pointer; null where the request declares none there."
+        description="Units of the inputs as they are written, by pointer; null where that is not known, as of a plain "
+        "number of let."
+    )
+    figure_units: list[str | None] = Field(
+        description="Units of the figures, in the order of until; null where no answer has a number for it."
     )
 
 
@@ -103,7 +108,7 @@ def finding(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
 
     def find(question: FindRequest, budget: Budget) -> Answer:
         route = table.route(question.question)
-        varied = varied_of(question, route)
+        varied = varied_of(question, lambda path: table.unit_of(question.question, path))
         conditions = conditions_of(question, route)
         if len(varied) != len(conditions):
             rule = f"have as many entries as numbers are varied: {len(varied)}, not {len(conditions)}"
@@ -121,8 +126,9 @@ def finding(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
             for shown, solution in zip(answer["solutions"], findings.solutions, strict=True):
                 forward = evaluations.answer(solution.inputs)
                 shown["answer"] = _without_notices(forward)
-        units = {one.pointer: unit_at(route.question, one.path) for one in varied}
-        return answer | {"units": units, "warnings": findings.notices}
+        answer["units"] = {one.pointer: one.unit for one in varied}
+        answer["figure_units"] = [evaluations.unit(k) for k in range(len(conditions))]
+        return answer | {"warnings": findings.notices}
 
     return PostRoute(
         PATH,

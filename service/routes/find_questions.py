@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import isfinite
 from typing import Annotated, Any, Literal
 
@@ -16,11 +16,12 @@ from core.errors import InvalidParameter, Path, inside_field, pointer_of
 from core.find.figures import Happens
 from core.find.search import MOST_INPUTS, WANTED, Condition
 from core.find.varied import LARGEST, Scale, Varied, can_vary
+from core.multibody.language.written_units import number_within
 from core.near_names import did_you_mean
 from core.sensitivities.figure import figure_of
+from service.requests.declared_units import unit_at
 from service.requests.figures import NamedEvent, WrittenFigure
 from service.routes.assessments.question_table import EndpointRequest
-from service.routes.declared_units import unit_at
 from service.routing import PostRoute
 from service.schemas import ObjectOrArray, Request
 
@@ -80,8 +81,8 @@ class FindRequest(Request):
     answers: bool = Field(default=False, description="Whether the answer to the question comes with each solution.")
 
 
-def varied_of(question: FindRequest, route: PostRoute) -> list[Varied]:
-    """Return what is varied, or refuse what is no number of the request."""
+def varied_of(question: FindRequest, unit_of: Callable[[Path], str | None]) -> list[Varied]:
+    """Return what is varied, or refuse what is no number of the request, of which `unit_of` gives the units."""
     several = isinstance(question.vary, list)
     entries = question.vary if isinstance(question.vary, list) else [question.vary]
     request = question.question.request
@@ -91,10 +92,10 @@ def varied_of(question: FindRequest, route: PostRoute) -> list[Varied]:
         path = _place(entry.pointer, request, (*within, "pointer"))
         if any(path[: len(one.path)] == one.path or one.path[: len(path)] == path for one in made):
             raise InvalidParameter((*within, "pointer"), "vary nothing that another entry varies")
-        unit = unit_at(route.question, path)
+        unit = unit_of(path)
         least, most = (_number(end, unit, (*within, "between", i)) for i, end in enumerate(entry.between))
         with inside_field(*within):
-            made.append(Varied(entry.pointer, path, least, most, entry.scale))
+            made.append(Varied(entry.pointer, path, least, most, entry.scale, unit))
     return made
 
 
@@ -108,6 +109,9 @@ def _place(pointer: str, request: Any, within: Path) -> Path:
     present = at(request, path) if path else None
     if path and can_vary(present, request.get("let") or ()):
         return path
+    if (inner := number_within(present, path)) is not None:
+        rule = "lead to the number itself, which is written with its unit"
+        raise InvalidParameter(within, rule, remedy=f"write {pointer_of(inner)}; between is in that unit")
     near = did_you_mean(pointer, [pointer_of(one) for one in known])
     remedy = near or "write the number that is varied into the request of the question, with any value"
     raise InvalidParameter(within, "lead to a number in the request", remedy=remedy)

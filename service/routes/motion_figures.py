@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from core.errors import InvalidParameter
+from service.requests.declared_units import unit_at
 from service.responses.linear_svg import Line, Panel, panels
 from service.responses.motion_svg import Column, numbers, over_time
-from service.routes.declared_units import unit_at
 from service.routing import Answer
 
 ROTATION = (("angular_velocity", "rad s^-1"), ("attitude", "1"))

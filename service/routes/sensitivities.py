@@ -17,10 +17,10 @@ from core.sensitivities.figure import figure_of
 from core.sensitivities.sensitivities import Inputs, sensitivities
 from core.systems.budget import Budget
 from service.requests.annotations import ANNOTATED
+from service.requests.declared_units import has_field
 from service.requests.figures import SensitivitiesQuestion
 from service.requests.request_reader import Limits, Reader
 from service.routes.assessments.route_source import RouteSource
-from service.routes.declared_units import has_field
 from service.routing import Answer, PostRoute, never
 from service.schemas import Request, View
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from math import cos, radians, sin
+from math import atan, cos, degrees, radians, sin, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -151,3 +151,66 @@ def test_equations_that_the_question_asks_for_are_shown_with_the_reference() -> 
     shown = handled(question, claim)["equations"]["equations"]
     assert [one["plain"] for one in shown] == ["bob.theta'' = -9.81*sin(bob.theta)"]
     assert "equations" not in handled(question, claim, reveal=False)
+
+
+SLIDING: Any = {
+    "gravity": [0, -9.81],
+    "let": {"a": {"degrees": 10}},
+    "bodies": {"block": {"mass": 2, "at": [0, 0]}},
+    "connections": [
+        {"kind": "contact", "place": "block", "on": {"at": [0, 0], "slope": "a"}, "friction": 0.7},
+    ],
+    "outputs": [{"thresholds": {"vary": "/let/a/degrees", "between": [0, 60]}}],
+}
+SEARCHED: Any = {
+    "gravity": [0, -9.81],
+    "bodies": {"bob": {"mass": 1, "at": [0, -1], "velocity": [1, 0]}},
+    "connections": [{"kind": "rod", "a": "bob", "b": [0, 0]}],
+    "times": [0, 1, 2],
+    "outputs": [{"extremes": "bob.position.x"}, {"when": {"quantity": "bob.position.x", "equals": 0.1, "nth": 1}}],
+}
+
+
+def verdict_of(question: Any, pointer: str, value: float, unit: str) -> str:
+    (result,) = handled(question, {pointer: {"value": value, "unit": unit}})["results"]
+    verdict: str = result["tests"][0]["verdict"]
+    return verdict
+
+
+def test_a_threshold_is_claimed_in_the_unit_that_it_states() -> None:
+    """A block begins to slide at the slope whose tangent is the coefficient of friction."""
+    question = {"path": "/v1/scenes", "request": SLIDING}
+    assert answer_to(question)["thresholds"][0]["unit"] == "deg"
+    upper = "/thresholds/0/upper/value"
+    assert verdict_of(question, upper, atan(0.7), "rad") == "correct"
+    assert verdict_of(question, upper, degrees(atan(0.7)), "deg") == "correct"
+    assert verdict_of(question, upper, atan(0.7), "m") == "wrong-unit"
+
+
+def test_times_of_searches_are_claimed_in_seconds() -> None:
+    question = {"path": "/v1/scenes", "request": SEARCHED}
+    answer = answer_to(question)
+    for pointer, value in (
+        ("/extremes/0/largest_time", answer["extremes"][0]["largest_time"]),
+        ("/occurrences/0/time", answer["occurrences"][0]["time"]),
+    ):
+        assert verdict_of(question, pointer, value, "s") == "correct"
+        assert verdict_of(question, pointer, value, "m") == "wrong-unit"
+
+
+def test_a_found_input_is_claimed_in_the_unit_in_which_it_is_written() -> None:
+    """A pendulum that starts at its lowest place with v turns back at the height v^2 / (2 g)."""
+    request = SEARCHED | {"outputs": [{"extremes": "bob.position.x"}]}
+    backwards = {
+        "question": {"path": "/v1/scenes", "request": request},
+        "vary": {"pointer": "/bodies/bob/velocity/0", "between": [0.5, 1.5]},
+        "until": {"figure": "/extremes/0/largest", "equals": 0.25},
+    }
+    question = {"path": "/v1/find", "request": backwards}
+    answer = answer_to(question)
+    assert (answer["units"], answer["figure_units"]) == ({"/bodies/bob/velocity/0": "m/s"}, ["m"])
+    speed = sqrt(2 * 9.81 * (1 - sqrt(1 - 0.25**2)))
+    pointer = "/solutions/0/values/~1bodies~1bob~1velocity~10"
+    assert verdict_of(question, pointer, 3.6 * speed, "km/h") == "correct"
+    assert verdict_of(question, pointer, speed, "m") == "wrong-unit"
+    assert verdict_of(question, "/solutions/0/figure", 25, "cm") == "correct"

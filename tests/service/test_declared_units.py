@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 from pydantic import TypeAdapter
 
+from core.assessment.stated_units import BESIDE, OF_THAT_NAME, OF_THE_FIGURE, OF_THE_INPUT
+from service.requests.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.routes import questions
-from service.routes.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.routing import PostRoute
 
 WITHOUT_UNITS = ("/v1/scenes/import", "/v1/scenes/export")
@@ -20,6 +21,9 @@ ROUTES = {
     if not route.path.startswith("/v1/certified/") and route.path not in WITHOUT_UNITS
 }
 DEEPEST = 6
+GRADED = ("/v1/find", *(path for path in ROUTES if path.startswith(("/v1/bodies/", "/v1/rotation/", "/v1/scenes"))))
+OF_CHANGES = "as in the changes"
+"""Of the shapes of modes: metres for each metre, or radian, of the largest change, and so of no unit of its own."""
 
 
 def resolved(schema: Any, node: Any) -> Any:
@@ -56,6 +60,31 @@ def test_every_unit_of_an_answer_is_found_by_its_path(route: PostRoute) -> None:
         while path and path[-1] == 0:
             path = path[:-1]
         assert unit_at(route.answer, path) == unit, path
+
+
+def relative_units(schema: Any, node: Any, stated: bool = False) -> Iterator[tuple[str, bool]]:
+    """Yield the units that only an answer states, and whether it does so beside what has them, or around that."""
+    node = resolved(schema, node)
+    unit = node.get("x-unit", "")
+    if unit.startswith("as ") or unit.startswith("product"):
+        yield unit, stated
+    properties = node.get("properties", {})
+    here = stated or "unit" in properties
+    inner = [*properties.values(), *node.get("prefixItems", ()), *node.get("anyOf", ()), *node.get("oneOf", ())]
+    inner += [node[key] for key in ("items", "additionalProperties") if isinstance(node.get(key), dict)]
+    for entry in inner:
+        yield from relative_units(schema, entry, here)
+
+
+@pytest.mark.parametrize("route", [ROUTES[path] for path in GRADED], ids=lambda route: route.operation_id)
+def test_every_unit_that_an_answer_states_can_be_found_in_it(route: PostRoute) -> None:
+    schema = TypeAdapter(route.answer).json_schema()
+    properties = resolved(schema, schema).get("properties", {})
+    for unit, stated in relative_units(schema, schema):
+        assert unit in (BESIDE, OF_THAT_NAME, OF_THE_INPUT, OF_THE_FIGURE, OF_CHANGES)
+        assert unit != BESIDE or stated
+        assert unit != OF_THE_INPUT or "units" in properties
+        assert unit != OF_THE_FIGURE or "figure_units" in properties
 
 
 def test_what_has_no_unit_has_none() -> None:

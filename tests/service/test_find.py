@@ -170,7 +170,9 @@ def test_it_is_planned_and_graded_and_swept() -> None:
         "/v1/assessments",
         {
             "question": {"path": PATH, "request": request},
-            "submissions": [{"/solutions/0/values/~1body~1moments~11": {"value": value}} for value in (2.42, 2.3)],
+            "submissions": [
+                {"/solutions/0/values/~1body~1moments~11": {"value": value, "unit": "kg m^2"}} for value in (2.42, 2.3)
+            ],
         },
     )
     assert [one["correct"] for one in graded["results"]] == [True, False]

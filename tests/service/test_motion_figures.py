@@ -14,12 +14,12 @@ import pytest
 
 from core.errors import InvalidParameter
 from core.systems.budget import Budget
+from service.requests.declared_units import has_field
 from service.requests.request_reader import Limits, Reader
 from service.responses.linear_svg import LEFT, WIDTH
 from service.responses.motion_svg import Column, numbers, over_time
 from service.responses.svg import SVG
 from service.routes import questions
-from service.routes.declared_units import has_field
 from service.routing import Answer, PostRoute
 from tests.service.conftest import client_of, inline_service
 

@@ -22,6 +22,9 @@ class DeclaredUnit(Protocol):
     def check(self, value: object, path: Path, measure: object) -> None:
         """Raise `InvalidParameter` for a number whose unit the field cannot have."""
 
+    def unit_at(self, path: Path, measure: object) -> str | None:
+        """Return the unit of the number at a path within the field, None where none is declared."""
+
 
 @dataclass(frozen=True)
 class Measured:
@@ -59,6 +62,12 @@ class Measured:
             for i, entry in enumerate(value):
                 self.check(entry, (*path, i), measure)
 
+    def unit_at(self, path: Path, measure: object) -> str | None:
+        """See `DeclaredUnit.unit_at`."""
+        if path[:2] == ("polar", 1):
+            return "rad"
+        return self.of_turn if self.of_turn is not None and measure == "turn" else self.unit
+
 
 @dataclass(frozen=True, eq=False)
 class Members:
@@ -78,6 +87,11 @@ class Members:
             for name in (name for name in value if name in self.units):
                 Measured(self.units[name]).check(value[name], (*path, name), measure)
 
+    def unit_at(self, path: Path, measure: object) -> str | None:
+        """See `DeclaredUnit.unit_at`."""
+        unit = self.units.get(str(path[0])) if path else None
+        return None if unit is None else Measured(unit).unit_at(path[1:], measure)
+
 
 @dataclass(frozen=True)
 class Named:
@@ -95,6 +109,10 @@ class Named:
         if isinstance(value, Mapping):
             for name, entry in value.items():
                 Measured(self.unit).check(entry, (*path, name), measure)
+
+    def unit_at(self, path: Path, measure: object) -> str | None:
+        """See `DeclaredUnit.unit_at`."""
+        return Measured(self.unit).unit_at(path[1:], measure)
 
 
 def check_units(part: Any, path: Path) -> None:

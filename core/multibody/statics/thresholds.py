@@ -31,6 +31,7 @@ from core.multibody.equations.packed import nearest
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.language.written import Number
+from core.multibody.language.written_units import unit_at, within_object
 from core.multibody.table.description import Described, described
 from core.near_names import did_you_mean
 from core.work import spend
@@ -146,6 +147,9 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
             path=where,
             remedy="describe places of the rim that touch",
         )
+    if (inner := within_object(scene, path)) is not None:
+        rule = "lead to the number itself, which is written with its unit"
+        raise InvalidParameter((*where, "vary"), rule, remedy=f"write {pointer_of(inner)}; between is in that unit")
     if path not in numerals.every:
         near = did_you_mean(question.vary, [pointer_of(one) for one in numerals.every])
         raise InvalidParameter(
@@ -159,10 +163,12 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
     touching = assemble_contacts(base).touching
     value = nearest(written)
     error = distance_bound(written, value) or 0.0
+    unit = unit_at(scene, path)
     if not _rests(base, touching):
-        return RestRange(question.vary, value, None, None, _why_not(base, touching), error)
+        return RestRange(question.vary, unit, value, None, None, _why_not(base, touching), error)
     varied = _Varied(scene, path, where, touching)
-    return RestRange(question.vary, value, _end(varied, written, least), _end(varied, written, most), None, error)
+    lower, upper = _end(varied, written, least), _end(varied, written, most)
+    return RestRange(question.vary, unit, value, lower, upper, None, error)
 
 
 def _why_not(base: Described, touching: Sequence[int]) -> str:

@@ -14,6 +14,7 @@ from core.assessment.graded_question import GradedQuestion
 from core.errors import MechanicsError, Path, inside_field, pointer_of
 from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
+from service.requests.declared_units import unit_at
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.routes.assessments.route_source import Refused, RouteSource, graded_question
@@ -80,6 +81,16 @@ class QuestionTable:
         with within_question():
             self._read(route, question.request)
         return route
+
+    def unit_of(self, question: EndpointRequest, path: Path) -> str | None:
+        """Return the unit of a number of the question as it is written, None where it is not known."""
+        route = self.route(question)
+        try:
+            unit: str | None = self._read(route, question.request).unit_of(path)
+        except (Refusal, MechanicsError):
+            # What is refused as it stands may be asked with other numbers.
+            return unit_at(route.question, path)
+        return unit
 
     def small(self, question: EndpointRequest) -> bool:
         """Return whether the question, or the problem that answers it, may be begun in the event loop."""

@@ -16,10 +16,10 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.work import spend
 from service.problems import Refusal
+from service.requests.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.responses.json_rows import written
 from service.routes.bodies import properties_of
 from service.routes.certified.answers import ONLY_ORDINARY
-from service.routes.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.routing import Answer, PostRoute
 
 DIGITS = 20

@@ -19,8 +19,8 @@ from core.studies.designs import Design, Kind
 from core.studies.statistics import BINS, PROBABILITIES, STATISTICS, Statistic
 from core.studies.study_input import StudyInput
 from core.systems.budget import Budget
+from service.requests.declared_units import unit_at
 from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, within_question
-from service.routes.declared_units import unit_at
 from service.routes.studies.members import Members, number_of
 from service.routes.studies.views import StudyState
 from service.routing import Answer, PostRoute, StudyRoute
