@@ -14,6 +14,7 @@ from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
 from core.multibody.motion.lost_rank import KEPT, first_lost, lines_that_may_depend
 from core.multibody.motion.motion import Motion, States
+from core.multibody.motion.other_rows import rows_for
 from core.multibody.motion.series import DONE, FULL, LOST, STUCK, advance, placed, sampled
 from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
 from core.multibody.table.table import Table
@@ -114,6 +115,7 @@ class Numerical(Motion):
     lost_to_doubles: bool = False
     rows: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
     _runs: dict[tuple[str, int], Run] = field(default_factory=dict, repr=False)
+    _met: list[Floats] = field(default_factory=list, repr=False)
 
     @classmethod
     def of(cls, table: Table, acceleration: Sequence[Ball], chosen: Sequence[int], why: str) -> Numerical:
@@ -147,8 +149,26 @@ class Numerical(Motion):
             # hold what their compensated sums left.
             more = integrate(self.table, self.arrays, self.units, kind, end, since)
             if more.starts[-1, 0] != more.starts[0, 0]:
-                return since.followed_by(up_to_lost_rank(self.arrays, self.rows, more))
-        return up_to_lost_rank(self.arrays, self.rows, integrate(self.table, self.arrays, self.units, kind, end))
+                found = since.followed_by(up_to_lost_rank(self.arrays, self.rows, more))
+                return self.steps(kind, end) if found.singular and self._takes_other_rows(found) else found
+        found = up_to_lost_rank(self.arrays, self.rows, integrate(self.table, self.arrays, self.units, kind, end))
+        return self.steps(kind, end) if found.singular and self._takes_other_rows(found) else found
+
+    def _takes_other_rows(self, run: Run) -> bool:
+        """Take rows that keep their rank where a run ends, and before where others did; return whether there are."""
+        count, table = len(self.arrays.rate), self.table
+        if count == len(table.rows):
+            return False
+        met = [*(self._met or [np.array([float(x) for x in table.q])])]
+        met.append(evaluate(run, np.array([run.end]))[0][0, :, 0] * self.units.up)
+        chosen = rows_for(table, count, met)
+        if chosen is None:
+            return False
+        # Runs by other rows differ by rounding, and are made anew.
+        self._met, self.rows = met, lines_that_may_depend(table, chosen)
+        self.arrays = packed(table, chosen, self.units)
+        self._runs.clear()
+        return True
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, and how far they are from a run in pairs."""

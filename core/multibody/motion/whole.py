@@ -118,8 +118,7 @@ class Whole:
             own = self.parts[parts[0]] if len(parts) == 1 else None
             known = None if own is None else own[1].in_arrays
             if own is not None and known is not None:
-                self._packed[parts] = (*known, list(own[0]))
-                return self._packed[parts]
+                return (*known, list(own[0]))
             # A clock is in every part that it drives.
             where = sorted({i for k in parts for i in self.parts[k][0]})
             table = restricted(self.reduced.table, where)
@@ -255,17 +254,25 @@ class Whole:
         found: Floats = offsets[:, 0] + z @ slopes[:, :, 0].T
         return found
 
-    def misfit(self, q: Floats, v: Floats) -> float:
-        """Return by how much the rows are missed at most: measures relative to their terms, rates to the largest."""
+    def misfit(self, states: States) -> float:
+        """Return by how much the rows are missed at most: measures relative to their terms, rates to the largest.
+
+        What is known of places and rates is taken off: the terms of a product near zero, and all rates where a motion
+        turns back, may be smaller than that.
+        """
+        q, v = states.q, states.v
         worst, nothing, fastest = 0.0, _NO_TERM * largest_magnitude(q), largest_magnitude(v)
         for row in self.measures.table.rows:
             if row.measure is not None:
                 value, size = values(row.measure, q)
                 held = size > nothing
-                worst = max(worst, float(np.max(np.abs(value[held]) / size[held], initial=0.0)))
+                known = rates_along(row.rates, q, states.q_error[..., np.newaxis])[1]
+                off = np.maximum(np.abs(value) - known, 0.0)
+                worst = max(worst, float(np.max(off[held] / size[held], initial=0.0)))
             elif fastest > 0.0:
                 value, own = rates_along(row.rates, q, v)[0], rates_along(row.rates, q, np.full_like(v, fastest))[1]
-                off, size = np.abs(value - float(row.rate)), own + abs(float(row.rate))
+                known = rates_along(row.rates, q, states.v_error[..., np.newaxis])[1]
+                off, size = np.maximum(np.abs(value - float(row.rate)) - known, 0.0), own + abs(float(row.rate))
                 worst = max(worst, float(np.max(off[size > 0.0] / size[size > 0.0], initial=0.0)))
         return worst
 

@@ -65,7 +65,7 @@ class ColumnsInPhases:
         whole = phase.models[0].whole
         # What rests keeps to all of its rows: its rates are rounding, and no size for one another.
         moves = any(motion.moves for _, motion in whole.parts)
-        if whole.dropped and moves and phase.bounces is None and whole.misfit(states.q, states.v) > _HOLDS:
+        if whole.dropped and moves and phase.bounces is None and whole.misfit(states) > _HOLDS:
             raise NotApplicable(
                 "connections that depend on one another at the start do not do so later: the start is a singular place",
                 path=("connections",),
