@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import qr
 
 from core.arrays import Floats
 from core.multibody.table.table import Table
@@ -39,8 +38,13 @@ def rows_for(table: Table, count: int, places: Sequence[Floats]) -> list[int] | 
             return None
         ties.append(u[:, count:])
     # Left out is what the others say: rows with large shares in what ties them together at every place.
-    order = qr(np.concatenate(ties, axis=1).T, mode="r", pivoting=True)[1]
-    chosen = sorted(set(range(len(table.rows))) - {int(r) for r in order[: len(table.rows) - count]})
+    shares, chosen = np.concatenate(ties, axis=1), list(range(len(table.rows)))
+    while len(chosen) > count:
+        left_out = int(np.argmax(np.linalg.norm(shares, axis=1)))
+        chosen.remove(left_out)
+        way = shares[left_out] / np.linalg.norm(shares[left_out])
+        shares = shares - np.outer(shares @ way, way)
+        shares[left_out] = 0.0
     smallest = [np.linalg.svd(line[chosen], compute_uv=False) for line in lines]
     return chosen if all(values[-1] > _KEPT * values[0] for values in smallest) else None
 
