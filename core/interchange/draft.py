@@ -11,7 +11,7 @@ import numpy as np
 from core.arrays import Floats
 from core.interchange.frames import Frame
 from core.interchange.left_out import LeftOutOfFile
-from core.interchange.xml_reading import Element
+from core.interchange.xml_reading import Element, no_model
 
 JointKind = Literal[
     "weld",
@@ -31,6 +31,9 @@ JointKind = Literal[
 slide moves along it; `on-line` and `on-plane` are a point of the body on a line or plane, about which it turns freely;
 a particle moves and does not turn. `planar` are two slides and a turn in their plane, `planar-particle` two slides
 alone; `hinge-on-line` is a point of the body on a line, about which it turns across that."""
+
+MOST_BODIES = 400
+"""Bodies of a document with those that are fixed to others: four for each that a scene may have."""
 
 OF_THE_PLANE = ("planar", "hinge-on-line")
 """Joints that only a scene of the plane has."""
@@ -174,6 +177,18 @@ class Draft:
     contacts: list[DraftContact] = field(default_factory=list)
     left_out: list[LeftOutOfFile] = field(default_factory=list)
     moves: bool = False
+
+    def add(self, body: DraftBody) -> None:
+        """Enter a body.
+
+        Raises
+        ------
+        InvalidParameter
+            For one more than is read, with its line.
+        """
+        if len(self.bodies) >= MOST_BODIES:
+            raise no_model(body.line, f"it has more than {MOST_BODIES} links or bodies")
+        self.bodies[body.name] = body
 
     def carrier(self, name: str | None) -> str | None:
         """Return the body of which another is a part: massless, or welded to the ground; None is the ground."""

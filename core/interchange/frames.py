@@ -75,7 +75,9 @@ def roll_pitch_yaw(angles: Sequence[float]) -> Floats:
 
 def of_quaternion(numbers: Sequence[float] | Floats) -> Floats:
     """Return the rotation of a quaternion w, x, y, z of any length other than zero."""
-    w, x, y, z = vector(numbers) / np.linalg.norm(numbers)
+    # The squares of components of any size are doubles once the largest is about one; powers of two round nothing.
+    scaled = np.ldexp(vector(numbers), -np.frexp(np.abs(numbers).max())[1])
+    w, x, y, z = scaled / np.linalg.norm(scaled)
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

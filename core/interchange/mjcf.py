@@ -115,8 +115,9 @@ class _Reading:
         for one in (element, *element.all("inertial"), *joints):
             leave_out_unread(self.draft, one)
         moving, found = moved(motion, self.compiler.frame(element), joints, self.compiler, self.take, self)
-        self.draft.bodies[name] = DraftBody(
-            name, moving.frame, 0.0, np.zeros(3), np.zeros((3, 3)), element.line, moving.velocity, moving.turning
+        centre, tensor = np.zeros(3), np.zeros((3, 3))
+        self.draft.add(
+            DraftBody(name, moving.frame, 0.0, centre, tensor, element.line, moving.velocity, moving.turning)
         )
         joined(self.draft, element, name, parent, found, moving.frame)
         self.body(element, name, moving, inherited)
@@ -176,6 +177,8 @@ class _Reading:
             if child.required("site") not in self.sites:
                 raise fault(child, f"must name a site, unlike {shortened(child.get('site'))}")
             places.append(self.sites[child.get("site")])
+        if len(places) < 2:
+            raise fault(tendon, "must go through two sites or more")
         name = tendon.get("name") or "tendon"
         ends: dict[str, Ended | list[Ended]] = {"a": places[0], "b": places[-1]}
         length = float(sum(np.linalg.norm(q[1] - p[1]) for p, q in pairwise(places)))
@@ -187,6 +190,8 @@ class _Reading:
                 self.draft.connections.append(DraftConnection(name, ends, {"kind": "rod"}))
             if stiffness:
                 rest = numbers_in(tendon, tendon.get("springlength", f"{length!r}"), "springlength", None)
+                if not rest:
+                    raise fault(tendon, "must have numbers in springlength")
                 if len(set(rest)) > 1:
                     self.draft.leave_out(tendon, "its spring has a range of lengths without force")
                 own = {"kind": "spring", "stiffness": stiffness, "rest_length": rest[0] if rest[0] >= 0.0 else length}

@@ -70,7 +70,7 @@ class _Model:
                 body = self.body(link, frame)
                 if body.name in draft.bodies:
                     raise fault(link, f"must have a name of its own in the world, unlike {shortened(body.name)}")
-                draft.bodies[body.name] = body
+                draft.add(body)
         # The joints of what is the ground hold nothing that moves.
         for joint in () if static else by_name(model.all("joint")).values():
             self.joint(joint)

@@ -47,7 +47,7 @@ def read_urdf(root: Element) -> Draft:
         body = _body(link, frames[name], draft)
         ground = name == WORLD or (name not in parents and not body.massive)
         if not ground:
-            draft.bodies[name] = body
+            draft.add(body)
         elif body.massive:
             draft.leave_out(link, "it is the ground, and its inertia moves nothing", changes_motion=False)
     for name, joint in parents.items():

@@ -27,7 +27,9 @@ HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
 VARIED = [
     path
     for path in ROUTES
+    # Documents of other programs are no figures.
     if not path.startswith(("/v1/certified", "/v1/plan", "/v1/assess", "/v1/studies", "/v1/fits", PATH))
+    and path not in ("/v1/scenes/import", "/v1/scenes/export")
 ]
 Body = dict[str, Any]
 JSON = {"content-type": "application/json"}

@@ -49,3 +49,9 @@ def test_frames_in_frames_and_points_in_and_out() -> None:
     assert inner.point(place) == pytest.approx(outer.point(place + vector((0.1, 0.2, 0.3))), abs=1e-15)
     assert inner.inside(inner.point(place)) == pytest.approx(place, abs=1e-15)
     assert parallel(outer.direction(vector((0.6, 0.0, 0.8))), vector((-0.6, 0.0, -0.8)))
+
+
+def test_quaternions_of_any_length_are_rotations() -> None:
+    """Squares of 1e-200 and 1e200 are no doubles."""
+    for size in (1e-200, 1.0, 1e200):
+        assert of_quaternion([size, 0.0, 0.0, size]) == pytest.approx(turn_about(np.array([0.0, 0.0, 1.0]), np.pi / 2))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.errors import InvalidParameter
+from core.interchange.draft import MOST_BODIES
 from core.interchange.import_model import import_model
 from tests.core.interchange.answers import imported
 
@@ -57,3 +58,13 @@ def test_what_is_welded_to_the_ground_is_the_ground() -> None:
     scene = import_model(f"<mujoco><worldbody>{post}</worldbody></mujoco>").scene
     assert list(scene["bodies"]) == ["arm"]
     assert scene["connections"][0]["b"] == [0.0, 0.0, 1.0]
+
+
+def test_more_bodies_than_are_read_are_refused_with_the_line_of_the_first() -> None:
+    mjcf = "<mujoco><worldbody>\n" + f"<body><freejoint/>{INERTIAL}</body>\n" * (MOST_BODIES + 1)
+    urdf = "<robot>\n" + "".join(
+        f'<link name="l{k}"><inertial><mass value="1"/></inertial></link>\n' for k in range(MOST_BODIES + 1)
+    )
+    for text in (f"{mjcf}</worldbody></mujoco>", f"{urdf}</robot>"):
+        with pytest.raises(InvalidParameter, match=f"line {MOST_BODIES + 2}: it has more than {MOST_BODIES} links"):
+            import_model(text)

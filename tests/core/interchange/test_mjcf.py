@@ -203,3 +203,15 @@ def test_velocities_of_a_keyframe_begin_the_motion() -> None:
     turn = np.linalg.solve(inertia, -np.cross(w, inertia @ w))
     assert scene["bodies"]["b"]["velocity"] == pytest.approx([0, 1.8, 0], abs=1e-15)
     assert accelerations(scene)["b"] == pytest.approx(np.cross(turn, r) + np.cross(w, np.cross(w, r)), abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("sites", "length", "says"),
+    [(0, "1", "two sites or more"), (1, "1", "two sites or more"), (2, "", "must have numbers in springlength")],
+)
+def test_tendons_have_two_sites_and_numbers(sites: int, length: str, says: str) -> None:
+    through = '<site site="s"/><site site="t"/>'[: sites * len('<site site="s"/>')]
+    text = f"""<mujoco><worldbody><site name="s"/><body pos="1 0 0"><freejoint/>{INERTIAL}<site name="t"/></body>
+</worldbody><tendon>\n<spatial stiffness="1" springlength="{length}">{through}</spatial></tendon></mujoco>"""
+    with pytest.raises(InvalidParameter, match=rf"line 3: <spatial> .*{says}"):
+        import_model(text)
