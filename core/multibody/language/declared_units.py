@@ -45,14 +45,9 @@ class Measured:
         if is_plain(value):
             return
         if isinstance(value, Mapping) and set(value) == {"value", "unit"}:
-            unit = self.of_turn if self.of_turn is not None and measure == "turn" else self.unit
-            where = (*path, "unit")
-            if unit_of(value["unit"], where).dimension != unit_of(unit, where).dimension:
-                raise InvalidParameter(
-                    where,
-                    f'be a unit of {unit}, unlike "{value["unit"]}"',
-                    remedy=f"give the number in {unit}, or in another unit of its dimension",
-                )
+            self._check_unit(value["unit"], (*path, "unit"), measure)
+        elif isinstance(value, Mapping) and set(value) == {"degrees"}:
+            self._check_unit("deg", (*path, "degrees"), measure)
         elif isinstance(value, Mapping) and set(value) == {"polar"}:
             polar = value["polar"]
             if isinstance(polar, Sequence) and len(polar) == 2:
@@ -66,7 +61,20 @@ class Measured:
         """See `DeclaredUnit.unit_at`."""
         if path[:2] == ("polar", 1):
             return "rad"
+        return self._own(measure)
+
+    def _own(self, measure: object) -> str:
         return self.of_turn if self.of_turn is not None and measure == "turn" else self.unit
+
+    def _check_unit(self, written: object, where: Path, measure: object) -> None:
+        unit, own = self._own(measure), unit_of(written, where)
+        # An angle has no dimension, and yet is no plain number such as a coefficient of friction.
+        if own.dimension != unit_of(unit, where).dimension or (unit == "1" and own.turns):
+            raise InvalidParameter(
+                where,
+                f'be a unit of {unit}, unlike "{written}"',
+                remedy=f"give the number in {unit}, or in another unit of its dimension",
+            )
 
 
 @dataclass(frozen=True, eq=False)

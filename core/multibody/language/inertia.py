@@ -16,6 +16,10 @@ from core.multibody.language.numerals import LARGEST, LEAST, Numerals
 from core.multibody.language.shapes import shape_of
 from core.quantities import members_of
 
+ROUNDED = 2.0**-48
+"""What rounding the entries of a tensor to doubles may add to its moments, with a factor of ten, as a share of its
+trace."""
+
 
 def inertia_of(name: str, body: SceneBody, numerals: Numerals, dimension: int) -> tuple[Ball, Any]:
     """Return mass, and in the plane the inertia, in space the tensor as three rows; None for a particle."""
@@ -93,13 +97,21 @@ def _catalogued(body: Any, path: Path) -> tuple[Ball, Any]:
 
 
 def _check_matter(tensor: Any, path: Path) -> None:
-    """Raise unless the integrals of the squares of body coordinates can be those of matter (diagonal entries only)."""
-    for i in range(3):
-        a, b, c = (tensor[(i + j) % 3][(i + j) % 3] for j in range(3))
-        if a < 0:
-            raise InvalidParameter(path, "be at least 0 kg m^2")
-        if a > b + c:
-            raise InvalidParameter(path, "be moments of matter: none exceeds the sum of the other two")
+    """Raise unless the integrals of the squares of body coordinates can be those of matter, about any axes.
+
+    They are the matrix trace/2 - J, of which no principal value may be negative: then no principal moment is negative
+    or exceeds the sum of the other two. A tensor off its axes is known to the rounding of its entries.
+    """
+    if any(tensor[i][i] < 0 for i in range(3)):
+        raise InvalidParameter(path, "be at least 0 kg m^2")
+    trace = tensor[0][0] + tensor[1][1] + tensor[2][2]
+    diagonal = all(is_zero(tensor[i][j]) for i in range(3) for j in range(i))
+    half = trace / 2 if diagonal else trace * (0.5 + ROUNDED)
+    (a, d, e), (_, b, f), (_, _, c) = [[(half if i == j else ZERO) - tensor[i][j] for j in range(3)] for i in range(3)]
+    minors = (a * b - d * d, b * c - f * f, c * a - e * e)
+    determinant = a * minors[1] - d * (d * c - e * f) + e * (d * f - e * b)
+    if any(x < 0 for x in (a, b, c, *minors, determinant)):
+        raise InvalidParameter(path, "be moments of matter: no principal moment exceeds the sum of the other two")
 
 
 def symmetry_axes(tensor: Any) -> list[int]:

@@ -31,6 +31,8 @@ _ROUNDED_UP = 1 + arb(2) ** -52
 
 LARGEST, LEAST = 10**300 * _ROUNDED_UP, 1 / (10**300 * _ROUNDED_UP)
 """Size between which numbers other than zero are, as decimals or doubles: these hold them with all their digits."""
+LARGEST_ANGLE = 1e15
+"""Radians: beyond it doubles are further apart than 0.1, so that none holds a direction."""
 LARGEST_POWER = 100
 """To which something is raised in a formula."""
 SHIFT = 2.0**-70
@@ -200,15 +202,18 @@ class Numerals:
     def angle(self, value: object, path: Path) -> tuple[Ball, Ball]:
         """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""
         if isinstance(value, Mapping) and set(value) == {"degrees"} and not isinstance(value["degrees"], Mapping):
-            turns = self.number(value["degrees"], (*path, "degrees")) / 180
-            sine, cosine = turns.sin_cos_pi()
-            return cosine, sine
-        if isinstance(value, Mapping) and value.get("unit") in DEGREES and set(value) == {"value", "unit"}:
+            half_turns = self.number(value["degrees"], (*path, "degrees")) / 180
+        elif isinstance(value, Mapping) and value.get("unit") in DEGREES and set(value) == {"value", "unit"}:
             # Read as any other, of which simple multiples are exact.
             self.number(value, path)
-            sine, cosine = (self.number(value["value"], (*path, "value")) / 180).sin_cos_pi()
+            half_turns = self.number(value["value"], (*path, "value")) / 180
+        else:
+            radians = self.number(value, path)
+            _check_angle(radians, path)
+            sine, cosine = radians.sin_cos()
             return cosine, sine
-        sine, cosine = self.number(value, path).sin_cos()
+        _check_angle(half_turns * arb.pi(), path)
+        sine, cosine = half_turns.sin_cos_pi()
         return cosine, sine
 
     def vector(self, value: object, path: Path, dimension: int) -> tuple[Ball, ...]:
@@ -226,6 +231,11 @@ class Numerals:
         if len(value) != dimension:
             raise InvalidParameter(path, f"have {dimension} entries, not {len(value)}")
         return tuple([self.number(entry, (*path, i)) for i, entry in enumerate(value)])
+
+
+def _check_angle(radians: Ball, path: Path) -> None:
+    if not abs(radians) <= LARGEST_ANGLE:
+        raise InvalidParameter(path, f"be an angle of at most {LARGEST_ANGLE:g} rad", remedy="leave out whole turns")
 
 
 def _is_of_motion(text: str, numerals: Numerals, let: Mapping[str, object]) -> bool:

@@ -215,3 +215,21 @@ def test_the_faults_of_all_parts_are_found_at_once() -> None:
         ("connections", 0, "stiffness", "unit"),
         ("connections", 1, "stiffness", "unit"),
     ]
+
+
+@pytest.mark.parametrize("entry", ["mass", "inertia", "at", "velocity", "angular_velocity"])
+def test_degrees_are_refused_where_no_angle_belongs(entry: str) -> None:
+    degrees: Any = {"degrees": 30}
+    value = [0, degrees] if entry in ("at", "velocity") else degrees
+    with pytest.raises(InvalidParameter, match="be a unit of") as fault:
+        check_units(SceneBody(**{"mass": 1, "at": (0, 0), entry: value}), ("bodies", "a"))
+    assert fault.value.path[:3] == ("bodies", "a", entry)
+    assert fault.value.path[-1] == "degrees"
+
+
+@pytest.mark.parametrize("angle", [{"degrees": 30}, {"value": 30, "unit": "deg"}])
+def test_a_coefficient_of_friction_is_no_angle(angle: Any) -> None:
+    track = KINDS["track"](name="t", place="a", on={"slope": angle}, friction=angle)  # type: ignore[call-arg]
+    with pytest.raises(InvalidParameter, match="be a unit of 1") as fault:
+        check_units(track, ("connections", 0))
+    assert fault.value.path[:3] == ("connections", 0, "friction")

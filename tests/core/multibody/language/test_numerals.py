@@ -150,3 +150,16 @@ def test_functions_of_what_cancels(text: str, value: Any) -> None:
     found = ball(text)
     assert found.is_finite()
     assert abs(float(found) - float(value)) < 1e-90 or float(found) == float(value)
+
+
+@pytest.mark.parametrize("angle", [1e100, {"degrees": 1e100}, {"value": 1e30, "unit": "deg"}, "-10^16"])
+def test_angles_whose_direction_no_double_holds_are_refused(angle: Any) -> None:
+    with precision(BITS), pytest.raises(InvalidParameter, match="an angle of at most"):
+        Numerals.of({}).angle(angle, ("x",))
+
+
+def test_large_angles_are_reduced_exactly() -> None:
+    with precision(BITS):
+        cosine, sine = Numerals.of({}).angle({"degrees": 3.6e14 + 30}, ("x",))
+        assert 0 in sine - arb(1) / 2
+        assert 0 in cosine * cosine - arb(3) / 4
