@@ -351,7 +351,7 @@ TESTED_IN |= {
             "equations/starting_pieces laws/corners language/switches phases/formula_ends table/law_pieces"
         ),
         "table/test_description": (
-            "language/inertia table/connection_effects table/coordinates "
+            "table/connection_effects table/coordinates "
             "table/frames table/joints table/measures table/rolling table/rows "
             "table/spatial_orientation"
         ),
