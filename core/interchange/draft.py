@@ -11,7 +11,7 @@ import numpy as np
 from core.arrays import Floats
 from core.interchange.frames import Frame
 from core.interchange.left_out import LeftOutOfFile
-from core.interchange.xml_reading import Element, no_model
+from core.interchange.xml_reading import Element, no_model, shortened
 
 JointKind = Literal[
     "weld",
@@ -168,6 +168,8 @@ class Draft:
     left_out : list of LeftOutOfFile
     moves : bool
         Whether velocities are given.
+    above : dict of str to DraftJoint
+        The joint of each body with its parent, as `join` enters it.
     """
 
     gravity: Floats
@@ -177,6 +179,7 @@ class Draft:
     contacts: list[DraftContact] = field(default_factory=list)
     left_out: list[LeftOutOfFile] = field(default_factory=list)
     moves: bool = False
+    above: dict[str, DraftJoint] = field(default_factory=dict)
 
     def add(self, body: DraftBody) -> None:
         """Enter a body.
@@ -190,16 +193,30 @@ class Draft:
             raise no_model(body.line, f"it has more than {MOST_BODIES} links or bodies")
         self.bodies[body.name] = body
 
+    def join(self, joint: DraftJoint) -> None:
+        """Enter the joint of a body that has none yet.
+
+        Raises
+        ------
+        InvalidParameter
+            Where the parent is carried by the child, with the line.
+        """
+        self.joints.append(joint)
+        self.above[joint.child] = joint
+        parent = joint.parent
+        while parent is not None:
+            if parent == joint.child:
+                raise no_model(joint.line, f"joints {shortened(joint.name)} and those above it carry one another")
+            parent = self.above[parent].parent if parent in self.above else None
+
     def carrier(self, name: str | None) -> str | None:
         """Return the body of which another is a part: massless, or welded to the ground; None is the ground."""
-        if name is None:
-            return None
-        joint = next((one for one in self.joints if one.child == name), None)
-        if joint is None or joint.kind != "weld":
-            return name
-        parent = self.carrier(joint.parent)
+        welded: list[str] = []
+        while name is not None and name in self.above and self.above[name].kind == "weld":
+            welded.append(name)
+            name = self.above[name].parent
         # What is welded to the ground does not move, whatever its mass.
-        return name if self.bodies[name].massive and parent is not None else parent
+        return None if name is None else next((one for one in welded if self.bodies[one].massive), name)
 
     def leave_out(self, element: Element, why: str, *, changes_motion: bool = True) -> None:
         """Say that an element is not taken."""

@@ -55,6 +55,13 @@ def at(place: Sequence[float] | Floats, rotation: Floats | None = None) -> Frame
     return Frame(np.eye(3) if rotation is None else rotation, vector(place))
 
 
+def unit(direction: Floats) -> Floats:
+    """Return numbers of any size, not all zero, divided by their length."""
+    # The squares of components of any size are doubles once the largest is about one; powers of two round nothing.
+    scaled: Floats = np.ldexp(direction, -np.frexp(np.abs(direction).max())[1])
+    return scaled / np.linalg.norm(scaled)
+
+
 def turn_about(axis: Floats, angle: float) -> Floats:
     """Return the rotation by an angle about an axis of length one (Rodrigues)."""
     if angle == 0.0:
@@ -75,9 +82,7 @@ def roll_pitch_yaw(angles: Sequence[float]) -> Floats:
 
 def of_quaternion(numbers: Sequence[float] | Floats) -> Floats:
     """Return the rotation of a quaternion w, x, y, z of any length other than zero."""
-    # The squares of components of any size are doubles once the largest is about one; powers of two round nothing.
-    scaled = np.ldexp(vector(numbers), -np.frexp(np.abs(numbers).max())[1])
-    w, x, y, z = scaled / np.linalg.norm(scaled)
+    w, x, y, z = unit(vector(numbers))
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -108,7 +113,7 @@ def as_quaternion(rotation: Floats) -> Floats:
 
 def axes_from(normal: Floats) -> Floats:
     """Return the smallest rotation that takes the z axis to a direction."""
-    z = normal / np.linalg.norm(normal)
+    z = unit(normal)
     across = np.cross([0.0, 0.0, 1.0], z)
     sine = float(np.linalg.norm(across))
     if sine == 0.0:

@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 
 from core.arrays import Floats
+from core.interchange import frames
 from core.interchange.frames import Frame, at, axes_from, of_quaternion, turn_about, vector
 from core.interchange.xml_reading import Element, fault, numbers_in, shortened
 
@@ -104,10 +105,9 @@ class Compiler:
 
 def unit(element: Element, direction: Floats) -> Floats:
     """Return a direction with length one."""
-    length = float(np.linalg.norm(direction))
-    if length == 0.0:
+    if not direction.any():
         raise fault(element, "must have axes other than zero")
-    return direction / length
+    return frames.unit(direction)
 
 
 def flag(element: Element, name: str) -> bool:
@@ -124,12 +124,15 @@ def sizes(geom: Element, count: int) -> tuple[float, ...]:
     """Return the first sizes of a geometry, of which more may be given."""
     if "fromto" in geom.attributes and count == 2:
         ends = vector(geom.numbers("fromto", 6))
-        radius = numbers_in(geom, geom.required("size"), "size", None)[0]
-        return radius, float(np.linalg.norm(ends[3:] - ends[:3])) / 2
-    found = numbers_in(geom, geom.required("size"), "size", None)
-    if len(found) < count or min(found[:count]) <= 0.0:
+        return *_first_sizes(geom, 1), float(np.linalg.norm(ends[3:] - ends[:3])) / 2
+    return _first_sizes(geom, count)
+
+
+def _first_sizes(geom: Element, count: int) -> tuple[float, ...]:
+    found = numbers_in(geom, geom.required("size"), "size", None)[:count]
+    if len(found) < count or min(found) <= 0.0:
         raise fault(geom, f"must have {count} positive sizes")
-    return found[:count]
+    return found
 
 
 def _add_class(

@@ -135,7 +135,7 @@ def joined(
     kind, axes, place = together
     called = joints[0].element.get("name") if joints else ""
     made = DraftJoint(called or f"{name}-joint", kind, parent, name, place, axes, body.line)
-    draft.joints.append(made)
+    draft.join(made)
     for joint in joints:
         _add_forces(draft, made, joint, alone=joint.kind == ("hinge" if kind == "hinge-on-line" else kind))
 

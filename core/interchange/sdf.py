@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from core.interchange.draft import Draft, DraftBody, DraftJoint, JointKind
-from core.interchange.frames import Frame, at, roll_pitch_yaw, vector
+from core.interchange.frames import Frame, at, roll_pitch_yaw, unit, vector
 from core.interchange.inertia import MOMENTS, inertia_tensor
 from core.interchange.xml_reading import Element, by_name, fault, numbers_in, shortened
 
@@ -130,7 +130,7 @@ class _Model:
             raise fault(joint, f"must be one of {', '.join(KINDS)}, not {shortened(type_name)}")
         if child is None or self.prefix + child not in self.draft.bodies:
             raise fault(joint, "must not move the ground")
-        if any(other.child == self.prefix + child for other in self.draft.joints):
+        if self.prefix + child in self.draft.above:
             raise fault(joint, f"must be the only joint of which {shortened(child)} is the child")
         frame = self.pose(joint, self.frames[child])
         axes, first = [], joint.first("axis")
@@ -144,7 +144,7 @@ class _Model:
             if seen_in and seen_in not in self.frames:
                 raise fault(joint, f"must have axes in the model or a link, unlike {shortened(seen_in)}")
             outer = self.frames[seen_in] if seen_in else frame
-            axes.append(outer.direction(direction / np.linalg.norm(direction)))
+            axes.append(outer.direction(unit(direction)))
         dynamics = None if first is None else first.first("dynamics")
         carrier = None if parent is None else self.prefix + parent
         made = DraftJoint(
@@ -156,7 +156,7 @@ class _Model:
             axes,
             joint.line,
         )
-        self.draft.joints.append(made)
+        self.draft.join(made)
         if dynamics is not None and kind in ("hinge", "slide"):
             made.damping, made.stiffness = _number(dynamics, "damping", 0.0), _number(dynamics, "spring_stiffness", 0.0)
             made.rest = _number(dynamics, "spring_reference", 0.0)

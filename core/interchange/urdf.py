@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from core.interchange.draft import Draft, DraftBody, DraftJoint, JointKind
-from core.interchange.frames import Frame, at, roll_pitch_yaw, vector
+from core.interchange.frames import Frame, at, roll_pitch_yaw, unit, vector
 from core.interchange.inertia import MOMENTS, inertia_tensor
 from core.interchange.xml_reading import Element, by_name, fault, shortened
 
@@ -123,10 +123,10 @@ def _joint(name: str, joint: Element, draft: Draft, frame: Frame) -> None:
     axis = vector((1.0, 0.0, 0.0) if axis_element is None else axis_element.numbers("xyz", 3))
     if kind != "weld" and not axis.any():
         raise fault(joint, "must have an axis other than zero")
-    axes = [] if kind == "weld" else [frame.direction(axis / np.linalg.norm(axis))]
+    axes = [] if kind == "weld" else [frame.direction(unit(axis))]
     dynamics, carrier = joint.first("dynamics"), parent.required("link")
     damping = 0.0 if dynamics is None else dynamics.number("damping", 0.0)
-    draft.joints.append(
+    draft.join(
         DraftJoint(
             joint.required("name"),
             kind,

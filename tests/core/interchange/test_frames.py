@@ -14,6 +14,7 @@ from core.interchange.frames import (
     parallel,
     roll_pitch_yaw,
     turn_about,
+    unit,
     vector,
 )
 
@@ -55,3 +56,8 @@ def test_quaternions_of_any_length_are_rotations() -> None:
     """Squares of 1e-200 and 1e200 are no doubles."""
     for size in (1e-200, 1.0, 1e200):
         assert of_quaternion([size, 0.0, 0.0, size]) == pytest.approx(turn_about(np.array([0.0, 0.0, 1.0]), np.pi / 2))
+
+
+def test_directions_of_any_length_have_length_one() -> None:
+    for size in (1e-300, 1e-162, 1.0, 1e200):
+        assert unit(size * np.array([3.0, 0.0, -4.0])) == pytest.approx([0.6, 0.0, -0.8], rel=1e-15)

@@ -173,6 +173,8 @@ def test_inertia_is_of_geometries_as_the_compiler_says(setting: str, mass: float
         ('<body><joint/><geom type="mesh"/></body>', "give the body an <inertial>"),
         ('<body><joint/><geom class="c"/></body>', "must name a class"),
         ('<body><joint/><geom type="box" size="1 -1 1"/></body>', "positive sizes"),
+        ('<body><joint/><geom type="capsule" fromto="0 0 0 0 0 1" size=" "/></body>', "1 positive sizes"),
+        ('<body><joint/><geom type="capsule" fromto="0 0 0 0 0 1" size="-1"/></body>', "1 positive sizes"),
         ('<body name="b"><joint/></body>', "moves and has no mass"),
         ('<include file="/etc/passwd"/>', "must be written out"),
     ],

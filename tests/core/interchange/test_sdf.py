@@ -94,3 +94,29 @@ def test_what_is_no_model_is_refused_at_its_line(text: str, says: str) -> None:
     with pytest.raises(InvalidParameter) as fault:
         import_model(text)
     assert says in fault.value.detail
+
+
+@pytest.mark.parametrize("kind", ["fixed", "ball"])
+@pytest.mark.parametrize("ends", [("ab", "ba"), ("ab", "bc", "ca"), ("aa",)])
+def test_links_that_carry_one_another_are_refused_at_the_last_joint(kind: str, ends: tuple[str, ...]) -> None:
+    links = "".join(LINK.replace("arm", name) for name in "abc").replace("\n", "")
+    joints = "".join(
+        f'\n<joint name="{p}-{c}" type="{kind}"><parent>{p}</parent><child>{c}</child></joint>' for p, c in ends
+    )
+    with pytest.raises(InvalidParameter, match=f"line {2 + len(ends) + 1}: .* carry one another"):
+        import_model(model(joints, links))
+
+
+def test_a_long_chain_of_fixed_links_is_one_body() -> None:
+    """Of links without mass but the first, in the order of the file and in the other."""
+    count = 390
+    links = LINK.replace("arm", "l0") + "".join(
+        f'<link name="l{k}"><inertial><mass>0</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia>'
+        "</inertial></link>"
+        for k in range(1, count)
+    )
+    joints = [
+        f'<joint name="j{k}" type="fixed"><parent>l{k - 1}</parent><child>l{k}</child></joint>' for k in range(1, count)
+    ]
+    for order in (1, -1):
+        assert list(import_model(model("".join(joints[::order]), links)).scene["bodies"]) == ["l0"]
