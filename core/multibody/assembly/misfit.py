@@ -23,6 +23,9 @@ WEIGHTS = (10.0, 100.0, 1000.0)
 miss by a thousandth of what it misses. From the first on the way would be a narrow valley."""
 
 
+LEAST_DAMPING = 1e-12
+"""Share of a step that is left to directions in which nothing changes, without which their equations are singular: far
+above the rounding of the others."""
 STALLED = 1e-12
 """Gain of a step, relative to the sum of squares, at which an iteration ends: three digits are answered."""
 
@@ -97,7 +100,7 @@ def _least_squares(measures: Quadratics, q: Floats, across: Floats) -> Floats:
         gained = float(values @ values) - float(further @ further)
         if gained > 0.0:
             done = gained <= STALLED * float(values @ values) and damping < 1.0
-            q, values, damping = q + step, further, damping / 4.0
+            q, values, damping = q + step, further, max(damping / 4.0, LEAST_DAMPING)
             if done:
                 break
         else:

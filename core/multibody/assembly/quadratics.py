@@ -124,7 +124,8 @@ def vanishing(measures: Quadratics, q: Floats, across: Floats) -> Floats:
         scale = float(np.trace(gram))
         if not LEAST_SCALE < scale < np.inf:
             break
-        gram[np.diag_indices_from(gram)] += DAMPING * scale + min(norm, 1.0) ** 2 * scale / len(values)
+        # Each row by its own size: those of an axis without extent are larger than others by far.
+        gram[np.diag_indices_from(gram)] += DAMPING * scale + min(norm, 1.0) ** 2 * gram.diagonal()
         change = -across @ (lines.T @ np.linalg.solve(gram, values))
         slope = float(values @ (measures.jacobian(q) @ change)) / norm
         share, further = 1.0, measures.values(q + change)

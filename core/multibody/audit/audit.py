@@ -60,7 +60,7 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
         Those of the question.
     """
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        description = description_of(scene)
+        description = description_of(scene, answered=answer.phases[0].states if answer.phases else None)
         if not description.moderate or answer.phases == ():
             return None
         found = _Audit(description, answer, times).worst(sampler, Ledger(ROUNDING))

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from functools import cached_property
+from math import hypot
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from core.multibody.audit.formulas import FormulaValue, MovingPlace, by_time
-from core.multibody.audit.placement import Numbers, Place, Placement, Pose, turned
+from core.multibody.audit.placement import LARGEST, LEAST, Numbers, Place, Placement, Pose, turned
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
@@ -78,16 +79,23 @@ class Reader:
     scene : Scene
     instead : mapping of path to float
         Numbers in place of those that are written.
+    answered : collection of str
+        Contacts of which an answer has states.
 
     Attributes
     ----------
+    moderate : bool
+        Whether the powers of the numbers that were read so far are doubles.
     dimension : int
     gravity : tuple of float
     bodies : mapping of str to RigidBody
     """
 
-    def __init__(self, scene: Scene, instead: Mapping[Path, float] | None = None) -> None:
-        self.scene, others = scene, {}
+    def __init__(
+        self, scene: Scene, instead: Mapping[Path, float] | None = None, answered: Collection[str] | None = None
+    ) -> None:
+        self.scene, self.answered, others = scene, answered, {}
+        self.moderate = True
         if instead:
             exact = Numerals.of({}, "doubles")
             others = {path: exact.number(value, path) for path, value in instead.items()}
@@ -101,8 +109,18 @@ class Reader:
         """Return a number as the nearest double."""
         # The double that was sent is the one nearest to its decimal.
         if isinstance(value, (float, int, Decimal)) and path not in self.numerals.instead:
-            return float(value)
-        return float(self.numerals.number(value, path))
+            found = float(value)
+        else:
+            found = float(self.numerals.number(value, path))
+        self.note_size(found, path)
+        return found
+
+    def note_size(self, number: float, path: Path) -> None:
+        """Take note of a number whose powers are no doubles; a coordinate may be as small as a zero is."""
+        size = abs(number)
+        of_law = path[:1] == ("connections",) and not isinstance(path[-1], int)
+        if size >= LARGEST or (of_law and 0.0 < size <= LEAST):
+            self.moderate = False
 
     def vector(self, value: object, path: Path) -> tuple[float, ...]:
         """Return a vector of the dimension of the scene."""
@@ -112,8 +130,9 @@ class Reader:
 
     def unit(self, value: object, path: Path) -> tuple[float, ...]:
         """Return the direction of a vector."""
-        found = np.array(self.vector(value, path))
-        return tuple((found / np.linalg.norm(found)).tolist())
+        # The squares of its components may be no doubles.
+        found = np.array([float(x) for x in self.numerals.vector(value, path, self.dimension)])
+        return tuple((found / hypot(*found)).tolist())
 
     def direction(self, slope: object, path: Path) -> tuple[float, float]:
         """Return cosine and sine of a slope."""

@@ -55,7 +55,7 @@ def contact(connection: Contact, reader: Reader, name: str, path: Path) -> Defin
         around = Outline((at,), reader.number(on["radius"], (*where, "radius")))
         return _by_corners(name, [*_between(name, own, around, touch)])
     face = _face(reader, on, where)
-    rim = level_rim(own, face, name, reader.bodies)
+    rim = level_rim(own, face, name, reader.bodies, reader.answered)
     tips = [Tip(place, own.radius, own.semi_axes) for place in own.corners] if rim is None else list(rim.tips)
     found = _by_corners(name, [OnFace(name, (*tip.place.bodies, *at.bodies), touch, tip, face) for tip in tips])
     return found if rim is None else ContactOfLevelRims(name, found.bodies, found, rim)

@@ -6,7 +6,7 @@ nothing with the table of equations that answers are computed by.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -51,6 +51,8 @@ class Description:
     undefined : mapping of str to str
         Connections without a definition by their names, and what is missing.
     start : mapping of str to Pose
+    within : bool
+        Whether the powers of all its numbers are doubles.
     """
 
     dimension: int
@@ -59,6 +61,7 @@ class Description:
     connections: tuple[Definition, ...]
     undefined: dict[str, str]
     start: Placement
+    within: bool = True
 
     @cached_property
     def places(self) -> float:
@@ -94,10 +97,12 @@ class Description:
         numbers.extend(connection.reach for connection in self.connections if connection.reach)
         numbers.extend(connection.mass for connection in self.connections if connection.mass)
         numbers.extend(abs(x) for x in self.gravity if x)
-        return all(LEAST < x < LARGEST for x in numbers)
+        return self.within and all(LEAST < x < LARGEST for x in numbers)
 
 
-def description_of(scene: Scene, instead: Mapping[Path, float] | None = None) -> Description:
+def description_of(
+    scene: Scene, instead: Mapping[Path, float] | None = None, answered: Collection[str] | None = None
+) -> Description:
     """Return the bodies of a scene and the definitions of its connections.
 
     The scene has been read and found in order before: nothing is checked here.
@@ -106,8 +111,10 @@ def description_of(scene: Scene, instead: Mapping[Path, float] | None = None) ->
     ----------
     instead : mapping of path to float, optional
         Numbers in place of those that are written.
+    answered : collection of str, optional
+        Contacts of which an answer has states.
     """
-    reader = Reader(scene, instead)
+    reader = Reader(scene, instead, answered)
     found: list[Definition] = []
     undefined: dict[str, str] = {}
     for i, (name, connection) in enumerate(zip(scene.names(), scene.connections, strict=True)):
@@ -115,7 +122,9 @@ def description_of(scene: Scene, instead: Mapping[Path, float] | None = None) ->
             found.extend(definition_of(connection, reader, name, ("connections", i)).members)
         except Undefined as missing:
             undefined[name] = missing.what
-    return Description(reader.dimension, reader.gravity, reader.bodies, tuple(found), undefined, reader.start)
+    return Description(
+        reader.dimension, reader.gravity, reader.bodies, tuple(found), undefined, reader.start, reader.moderate
+    )
 
 
 def kinds(connections: Sequence[Definition]) -> frozenset[str]:

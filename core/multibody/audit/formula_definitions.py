@@ -27,10 +27,18 @@ def formula_of(reader: Reader, value: object, own: Mapping[str, Read], path: Pat
     found = motion_formula(value, reader.numerals, names, others, path)
     if found is None:
         return None
+    _note_sizes(reader, found.root, path)
     inputs = {name: _read(reader, name, own) for name in found.names}
     rates = frozenset(name for name in found.names if name.rpartition(".")[2] in ("vx", "vy", "vz", "rate"))
     numbers = {name: float(number) for name, number in reader.numerals.let.items()}
     return FormulaValue(found.root, numbers, inputs, rates, reader.start)
+
+
+def _note_sizes(reader: Reader, node: Node, path: Path) -> None:
+    if node.kind == "number":
+        reader.note_size(float(node.text), path)
+    for inner in node.inner:
+        _note_sizes(reader, inner, path)
 
 
 def value_or_formula(reader: Reader, value: object, own: Mapping[str, Read], path: Path) -> FormulaValue:

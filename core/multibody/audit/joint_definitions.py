@@ -33,7 +33,7 @@ def pin(connection: Pin, reader: Reader, name: str, path: Path) -> Definition:
     a, b = ends_of(connection, reader, path)
     if connection.axis is None:
         return Coincidence(name, (*a.bodies, *b.bodies), a, b, None)
-    axis = reader.vector(connection.axis, (*path, "axis"))
+    axis = reader.unit(connection.axis, (*path, "axis"))
     axes = (in_body(reader, a.body, axis), in_body(reader, b.body, axis))
     return Coincidence(name, (*a.bodies, *b.bodies), a, b, axes)
 

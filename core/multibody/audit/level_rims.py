@@ -7,7 +7,7 @@ about a level axis at the start, that axis and the one across take the place of 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -76,14 +76,27 @@ class ContactOfLevelRims(Definition):
         return (*self.places_touch.members, self.rim)
 
 
-def level_rim(outline: Outline[Place], face: Face, name: str, bodies: Mapping[str, RigidBody]) -> LevelRim | None:
-    """Return the rims of an outline that start level on a face; None where there are none."""
+def level_rim(
+    outline: Outline[Place], face: Face, name: str, bodies: Mapping[str, RigidBody], answered: Collection[str] | None
+) -> LevelRim | None:
+    """Return the rims of an outline that start level on a face; None where there are none.
+
+    Parameters
+    ----------
+    answered : collection of str, or None
+        Contacts of which the answer has states. Beside `LEVEL` these say what a rim was taken for, which rounding may
+        decide; None where there is no answer.
+    """
     body = outline.corners[0].body
     if body is None or not outline.semi_axes or outline.semi_axes[2]:
         return None
     start = {own: one.start for own, one in bodies.items()}
     axes, radius, turns = start[body].rotation, outline.semi_axes[0], bodies[body].angular_velocity
-    if axes is None or np.abs(axes.T @ face.normal_in(start))[:2].max() >= LEVEL:
+    if axes is None:
+        return None
+    leaning = np.abs(axes.T @ face.normal_in(start))[:2].max()
+    places = f"{name}.{len(outline.corners) * len(QUARTERS)}"
+    if not leaning < LEVEL if answered is None else not (leaning < 2.0 * LEVEL and places in answered):
         return None
     c, s = (1.0, 0.0) if turns is None or not turns[1] else turns[:2] / np.linalg.norm(turns[:2])
     sides = [(radius * (c * x - s * y), radius * (s * x + c * y)) for x, y in QUARTERS]

@@ -25,8 +25,8 @@ STEP = 2.0**-450
 """Imaginary step (s): its square vanishes beside that of any length above 1e-120 at a speed of one, and its product
 with such a length is still a normal double."""
 
-LEAST, LARGEST = 1e-100, 1e100
-"""Sizes of numbers between which rates are formed by imaginary steps."""
+LEAST, LARGEST = 1e-100, 1e70
+"""Sizes of numbers between which rates are formed by imaginary steps, and fourth powers are doubles."""
 
 
 class Pose(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from core.balls import as_text
 from core.errors import InvalidParameter, Path, PlacesDisagree
-from core.multibody.algebra.directions import perpendicular
+from core.multibody.algebra.directions import unit
 from core.multibody.algebra.polynomials import ONE, ZERO, constant, difference, dot, evaluated
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 from core.multibody.language.written import GROUND
@@ -27,8 +27,7 @@ def pin(connection: Pin, measures: Measures, name: str, path: Path) -> None:
         return
     if measures.dimension == 2:
         raise InvalidParameter((*path, "axis"), "be left out in the plane")
-    axis = measures.numerals.vector(connection.axis, (*path, "axis"), 3)
-    perpendicular(axis, (*path, "axis"))
+    axis = unit(measures.numerals.vector(connection.axis, (*path, "axis"), 3), (*path, "axis"))
     frames = measures.coordinates.frames
     for body in (a.body, b.body):
         if body is not None and frames[body].axes is None:

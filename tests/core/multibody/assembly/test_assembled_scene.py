@@ -254,3 +254,31 @@ def test_a_shape_whose_squares_are_no_doubles_does_not_fit_and_that_is_said(radi
         solve_scene(sketch({"wheel": wheel}, [rolling], None))
     assert refused.value.remedy is not None
     assert not re.search(r"\b(nan|inf|0) m\b", refused.value.remedy)
+
+
+@pytest.mark.parametrize("y", [0.5, 1.5])
+@pytest.mark.parametrize(
+    ("kind", "axes"),
+    [
+        ("cylindrical", {"axis": [0, 0, 1]}),
+        ("screw", {"axis": [0, 0, 1], "pitch": 0.1}),
+        ("universal", {"axes": [[0, 0, 1], [1, 0, 0]]}),
+    ],
+)
+def test_a_plate_beside_its_joint_is_offered_the_place_on_it(kind: str, axes: dict[str, Any], y: float) -> None:
+    # A plate has no extent along its third axis: turns of that axis alone would cost next to nothing.
+    plate = {"mass": 1, "moments": [0.1, 0.1, 0.2], "at": [0, y, 0]}
+    connections = [{"kind": kind, "a": "a", "b": [0, 0, 0], **axes}]
+    with pytest.raises(InvalidParameter) as fault:
+        solve_scene(read({"bodies": {"a": plate}, "gravity": [0, 0, -9.81], "connections": connections}), [0.0])
+    assert '"a" at [0, 0, 0]' in (fault.value.remedy or "")
+
+
+def test_springs_that_nowhere_balance_are_refused_with_what_stays_open() -> None:
+    bodies = {"p": {"mass": 0, "at": [0, -1]}, "m": {"mass": 1, "at": [0, -2]}}
+    connections = [
+        {"kind": "spring", "a": [0, 0], "b": "p", "stiffness": 40, "rest_length": 0.9},
+        {"kind": "spring", "a": "p", "b": "m", "stiffness": 40, "rest_length": 100},
+    ]
+    with pytest.raises(InvalidParameter, match="where its springs balance"):
+        solve_scene(read({"bodies": bodies, "gravity": [0, -9.81], "connections": connections}), [0.0])
