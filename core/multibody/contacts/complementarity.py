@@ -17,7 +17,14 @@ from itertools import product
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.contacts.conditions_of_states import Situation, conditions_of, lasts, moves_as, same_motion
 from core.multibody.contacts.contact_forces import Balance, balanced
-from core.multibody.contacts.contact_responses import MOST_UNDECIDED, gap_rate, require_few, responses, slip_rate
+from core.multibody.contacts.contact_responses import (
+    MOST_UNDECIDED,
+    Responses,
+    gap_rate,
+    require_few,
+    responses,
+    slip_rate,
+)
 from core.multibody.contacts.contact_states import Problem, State, pairs_of_sides, phase_table, sticks_more
 from core.multibody.contacts.frictionless import decided_without_friction, is_smooth
 from core.multibody.contacts.slip_directions import (
@@ -167,6 +174,7 @@ def _decided_group(at: Situation, group: Sequence[int], settled: Sequence[State]
     consistent: list[Balance] = []
     several = False
     alike, sides = _sliding_alike(at, group), pairs_of_sides(at.unilateral, group)
+    exactly = at.found
     for states in product(*(at.choices[i] for i in group)):
         # In a guide without play and preload one side presses, if by nothing.
         if not all((states[a] is State.OPEN) != (states[b] is State.OPEN) for a, b in sides):
@@ -176,10 +184,12 @@ def _decided_group(at: Situation, group: Sequence[int], settled: Sequence[State]
         if any(sticks_more(other.states, states) for other in consistent):
             continue
         onsets = [i for i, state in zip(group, states, strict=True) if at.begins_somewhere(i, state)]
-        found = _onsets(at, group, states, onsets)
+        found = _onsets(at, group, states, onsets, exactly)
         several = several or found is None
         for ways in found or ():
             balance = balanced(at.unilateral, group, states, at.found, ways)
+            if balance is not None and balance.marginal and at.found is exactly:
+                at = at.letting_go(group)
             if balance is not None and lasts(at, group, settled, balance):
                 consistent.append(balance)
     if not consistent and several:
@@ -251,26 +261,31 @@ def _agree(first: State, second: State, sense: int) -> bool:
 
 
 def _onsets(
-    at: Situation, group: Sequence[int], states: Sequence[State], onsets: Sequence[int]
+    at: Situation, group: Sequence[int], states: Sequence[State], onsets: Sequence[int], exactly: Responses
 ) -> list[dict[int, Direction]] | None:
-    """Return the directions in which contacts may begin to slide in space; None where several are not found."""
+    """Return the directions in which contacts may begin to slide in space; None where several are not found.
+
+    What translates keeps the direction of slip without friction, which is known exactly where what slips is not.
+    """
     if not onsets:
         return [{}]
 
-    def after(assumed: Sequence[Direction], measures: Sequence[Unilateral] = at.unilateral) -> list[Direction] | None:
+    def after(
+        assumed: Sequence[Direction], measures: Sequence[Unilateral] = at.unilateral, responses: Responses = at.found
+    ) -> list[Direction] | None:
         ways = dict(zip(onsets, assumed, strict=True))
-        balance = balanced(measures, group, states, at.found, ways, shared=False)
+        balance = balanced(measures, group, states, responses, ways, shared=False)
         if balance is None:
             return None
-        lines = [at.found.grip(i) for i in onsets]
-        return [(at.found.along(balance.forces, x), at.found.along(balance.forces, y)) for x, y in lines]
+        lines = [responses.grip(i) for i in onsets]
+        return [(responses.along(balance.forces, x), responses.along(balance.forces, y)) for x, y in lines]
 
     def follows(way: Direction) -> Direction | None:
         slips = after([way])
         return None if slips is None else slips[0]
 
     smooth = [replace(one, kinetic=ZERO) if i in onsets else one for i, one in enumerate(at.unilateral)]
-    first = after([AHEAD] * len(onsets), smooth)
+    first = after([AHEAD] * len(onsets), smooth, exactly)
     if len(onsets) == 1:
         return [{onsets[0]: way} for way in directions(follows, first[0] if first else AHEAD)]
     together = directions_together(first, after) if first else []

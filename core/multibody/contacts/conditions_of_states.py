@@ -11,12 +11,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from flint import arb
+
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, is_zero
 from core.multibody.contacts.admissible_forces import admissible
 from core.multibody.contacts.certificates import Weights, certificates
 from core.multibody.contacts.contact_forces import Balance, sticks_in_space
 from core.multibody.contacts.contact_responses import Forces, Responses, rate_along
 from core.multibody.contacts.contact_states import State, grips, phase_table
+from core.multibody.contacts.shares_in_space import MARGINAL
 from core.multibody.contacts.slip_directions import turned
 from core.multibody.equations.expansion import expansion, leading_sign
 from core.multibody.table.connection_effects import Unilateral
@@ -34,6 +37,9 @@ class Situation:
     ----------
     choices : dict of int to tuple of State
         What each touching measure may do, as far as its rates tell.
+    missed : ball
+        Zero, with the width by which accelerations along the lines may be off: those of a state in which what sticks in
+        space lets go are known no better than the share of the load with which it does.
     """
 
     base: Table
@@ -42,6 +48,14 @@ class Situation:
     v: Sequence[Ball]
     choices: dict[int, tuple[State, ...]]
     found: Responses
+    missed: Ball = ZERO
+
+    def letting_go(self, group: Sequence[int]) -> Situation:
+        """Return the same where what sticks in space of a group does so by nothing, as far as that is known."""
+        found = self.found
+        lines = [line for i in group for line in (found.normal[i], *found.grip(i))]
+        missed = arb(0, MARGINAL * max(abs(float(found.free[line])) for line in lines))
+        return replace(self, found=replace(found, free=[x + missed for x in found.free]), missed=missed)
 
     def begins_somewhere(self, i: int, state: State) -> bool:
         """Return whether a measure begins to slide in space, in a direction that is still to be found."""
@@ -151,7 +165,8 @@ def _conditions_in_time(
             # Gap and rate are zero: the contact touches.
             yield motion.of(at.unilateral[i].gap)[2:]
         elif at.may_slip(i, states[i]):
-            yield [states[i].sense * x for x in motion.of_rates(at.unilateral[i].slip or {})[1:]]
+            start, *later = motion.of_rates(at.unilateral[i].slip or {})[1:]
+            yield [states[i].sense * x for x in (start + at.missed, *later)]
 
 
 def moves_as(at: Situation, group: Sequence[int], balance: Balance, others: Sequence[Balance]) -> bool:

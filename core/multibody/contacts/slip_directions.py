@@ -255,6 +255,9 @@ def _between(
         second, last = following, value
         if near or is_zero(value):
             break
+    if not abs(last) < max(abs(values[0].mid()), abs(values[1].mid())):
+        # The force grows beyond all bounds between the ends and changes its sign there: no motion.
+        return None
     # As wide as it is known with the state, by the slope between the ends.
     known = 2 * last.rad() * (ends[1] - ends[0]) / abs(values[1].mid() - values[0].mid())
     return _at(arb(second.mid(), known + 2.0 ** (_GUARD_OF_AN_ANGLE - ctx.prec)))
