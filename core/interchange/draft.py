@@ -128,11 +128,13 @@ class DraftConnection:
         By the field of the connection.
     fields : dict
         Those that are no places, and the kind.
+    line : int
     """
 
     name: str
     places: dict[str, Ended | list[Ended]]
     fields: dict[str, Any]
+    line: int
 
 
 @dataclass(frozen=True)
@@ -146,12 +148,14 @@ class DraftContact:
         A point of the plane, and its free side (m).
     friction : float
         Coefficient of sliding.
+    line : int
     """
 
     body: str
     at: Floats
     normal: Floats
     friction: float
+    line: int
 
 
 @dataclass

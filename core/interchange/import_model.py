@@ -6,15 +6,19 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from core.balls import precision
 from core.errors import InvalidParameter
 from core.interchange.draft import Draft
 from core.interchange.left_out import LeftOutOfFile
 from core.interchange.mjcf import read_mjcf
 from core.interchange.scene_of_draft import scene_of
+from core.interchange.scene_writing import WrittenScene
 from core.interchange.sdf import read_sdf
 from core.interchange.urdf import read_urdf
-from core.interchange.xml_reading import DOCUMENT, Element, read_xml, shortened
+from core.interchange.xml_reading import DOCUMENT, Element, no_model, read_xml, shortened
+from core.multibody.algebra.polynomials import BITS
 from core.multibody.language.reading import scene_from
+from core.multibody.table.description import described
 
 Format = Literal["urdf", "mjcf", "sdf"]
 """Formats that are read."""
@@ -64,7 +68,21 @@ def import_model(text: str) -> ImportedModel:
     draft = reader(root)
     if not draft.bodies:
         raise InvalidParameter(DOCUMENT, f"have a body that moves; line {root.line}: <{root.name}> has none")
-    scene = scene_of(draft)
-    # A scene that cannot be is refused here, where its file is at hand.
-    scene_from(scene)
-    return ImportedModel(name, scene, sorted(draft.left_out, key=lambda one: one.line))
+    written = scene_of(draft)
+    _require_scene(written, root)
+    return ImportedModel(name, written.description, sorted(draft.left_out, key=lambda one: one.line))
+
+
+def _require_scene(written: WrittenScene, root: Element) -> None:
+    """Refuse a scene that cannot be here, where its file is at hand."""
+    try:
+        scene = scene_from(written.description)
+        with precision(BITS):
+            described(scene, one_sided=True, sketch=True)
+    except InvalidParameter as wrong:
+        first, *further = (
+            no_model(written.lines.get(one.path[:2], root.line), f"in its scene {one.detail}", one.remedy)
+            for one in (wrong, *wrong.further)
+        )
+        first.further = tuple(further)
+        raise first from wrong

@@ -165,7 +165,7 @@ class _Reading:
         ends: dict[str, Ended | list[Ended]] = {"a": (first, place), "b": (second, place)}
         kind = "pin" if element.name == "connect" else "weld"
         name = element.get("name") or element.name
-        self.draft.connections.append(DraftConnection(name, ends, {"kind": kind}))
+        self.draft.connections.append(DraftConnection(name, ends, {"kind": kind}, element.line))
 
     def tendon(self, tendon: Element, fixed: bool) -> None:
         if tendon.name != "spatial" or any(child.name != "site" for child in tendon.children):
@@ -187,7 +187,7 @@ class _Reading:
             self.draft.leave_out(tendon, "springs, dampers and rods are between two places")
         else:
             if fixed:
-                self.draft.connections.append(DraftConnection(name, ends, {"kind": "rod"}))
+                self.draft.connections.append(DraftConnection(name, ends, {"kind": "rod"}, tendon.line))
             if stiffness:
                 rest = numbers_in(tendon, tendon.get("springlength", f"{length!r}"), "springlength", None)
                 if not rest:
@@ -195,15 +195,17 @@ class _Reading:
                 if len(set(rest)) > 1:
                     self.draft.leave_out(tendon, "its spring has a range of lengths without force")
                 own = {"kind": "spring", "stiffness": stiffness, "rest_length": rest[0] if rest[0] >= 0.0 else length}
-                self.draft.connections.append(DraftConnection(name, ends, own))
+                self.draft.connections.append(DraftConnection(name, ends, own, tendon.line))
             if damping:
                 own = {"kind": "damper", "coefficient": damping}
-                self.draft.connections.append(DraftConnection(f"{name}-damper", ends, own))
+                self.draft.connections.append(DraftConnection(f"{name}-damper", ends, own, tendon.line))
         if limited(tendon):
             least, most = tendon.numbers("range", 2)
+            if least >= most:
+                raise fault(tendon, "must have a range that ends above its begin")
             if least > 0.0:
                 self.draft.leave_out(tendon, "its length may become shorter than its range here")
             own = {"kind": "string", "length": most}
-            self.draft.connections.append(DraftConnection(f"{name}-string", {"through": places}, own))
+            self.draft.connections.append(DraftConnection(f"{name}-string", {"through": places}, own, tendon.line))
         if tendon.number("frictionloss", 0.0):
             self.draft.leave_out(tendon, "its friction is a constant force, which is not described")

@@ -146,7 +146,9 @@ class ContactReading:
         if self.draft.bodies[name].shape is None:
             add_shape(self.draft.bodies[name], other.element, self.compiler)
         own = fixed.frame @ self.compiler.frame(fixed.element)
-        self.draft.contacts.append(DraftContact(name, own.origin, own.rotation[:, 2], self._friction(one)))
+        self.draft.contacts.append(
+            DraftContact(name, own.origin, own.rotation[:, 2], self._friction(one), one.said.line)
+        )
         stated = [one.said] if one.said.name == "pair" else [fixed.element, other.element]
         soft = [word for word in OF_CONTACTS if any(states(element, word) for element in stated)]
         if soft:

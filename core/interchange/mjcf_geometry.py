@@ -10,6 +10,7 @@ import numpy as np
 from core.bodies import Body
 from core.bodies.composite import Composite, Part
 from core.bodies.solids import Ball, Capsule, Cuboid, Cylinder, Ellipsoid
+from core.errors import InvalidParameter
 from core.interchange.draft import DraftBody
 from core.interchange.frames import Frame, as_quaternion, vector
 from core.interchange.inertia import COMPONENTS, inertia_tensor
@@ -44,7 +45,10 @@ def add_inertia(body: DraftBody, element: Element, geoms: Sequence[Element], com
         if geom.get("mass") != "0" and (frame := compiler.geom_frame(geom))
     ]
     if parts:
-        properties = Composite(tuple(parts)).mass_properties()
+        try:
+            properties = Composite(tuple(parts)).mass_properties()
+        except InvalidParameter as wrong:
+            raise fault(element, f"must have geometries of matter: {wrong.detail}") from wrong
         body.mass = float(properties.exact_mass)
         body.centre = vector([float(x) for x in properties.exact_center_of_mass])
         body.tensor = np.array([[float(x) for x in row] for row in properties.exact_inertia])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -11,14 +10,14 @@ from core.arrays import Floats
 from core.interchange.draft import OF_THE_PLANE, Draft, DraftJoint
 from core.interchange.frames import PARALLEL, parallel
 from core.interchange.plane_scene_writing import PlaneSceneWriting
-from core.interchange.scene_writing import SceneWriting
+from core.interchange.scene_writing import SceneWriting, WrittenScene
 from core.interchange.xml_reading import no_model
 
 PLANES = ((2, (0, 1), 1.0), (1, (0, 2), -1.0), (0, (1, 2), 1.0))
 """Planes in which a model may move: the normal, which axes become x and y, the sign of turns about the normal."""
 
 
-def scene_of(draft: Draft) -> dict[str, Any]:
+def scene_of(draft: Draft) -> WrittenScene:
     """Return the description of a model: `gravity`, `bodies`, `connections`, as `scene_from` reads it.
 
     Raises

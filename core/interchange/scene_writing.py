@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from core.arrays import Floats
+from core.errors import Path
 from core.interchange.draft import Draft, DraftBody, DraftConnection, DraftContact, DraftJoint, Ended
 from core.interchange.left_out import LeftOutOfFile
 from core.interchange.xml_reading import no_model, shortened
@@ -30,6 +32,22 @@ def clean(values: Floats, size: float | None = None) -> list[float]:
     return [0.0 if abs(x) <= largest * 10.0**-DIGITS else float(f"{x:.{DIGITS}g}") for x in map(float, values)]
 
 
+@dataclass(frozen=True)
+class WrittenScene:
+    """A scene and where it is from.
+
+    Attributes
+    ----------
+    description : dict
+        As `scene_from` reads it.
+    lines : mapping of path to int
+        Lines of the document by the paths of bodies and connections.
+    """
+
+    description: dict[str, Any]
+    lines: Mapping[Path, int]
+
+
 class SceneWriting:
     """Writes a scene of space.
 
@@ -47,8 +65,9 @@ class SceneWriting:
         self.turnless: list[DraftJoint] = []
         self.size = max((float(np.abs(body.frame.origin).max()) for body in draft.bodies.values()), default=0.0)
 
-    def scene(self) -> dict[str, Any]:
-        """Return the description."""
+    def scene(self) -> WrittenScene:
+        """Return the description with the lines of its parts."""
+        lines = dict[Path, int]()
         carried = [name for name in self.draft.bodies if self.draft.carrier(name) == name]
         for name in carried:
             body = self.draft.bodies[name]
@@ -57,17 +76,21 @@ class SceneWriting:
                 raise no_model(body.line, f"{shortened(name)} moves and has no mass", remedy)
             self.names[name] = self.named(name, "body")
             self.bodies[self.names[name]] = self.body(body)
+            lines["bodies", self.names[name]] = body.line
         connections: list[dict[str, Any]] = []
-        for joint in self.draft.joints:
-            if joint.child in self.names:
-                connections += self.joint(joint)
-        connections += [self.connection(one) for one in self.draft.connections]
-        connections += [self.contact(one) for one in self.draft.contacts]
+        parts = [
+            *((joint.line, self.joint(joint)) for joint in self.draft.joints if joint.child in self.names),
+            *((one.line, [self.connection(one)]) for one in self.draft.connections),
+            *((one.line, [self.contact(one)]) for one in self.draft.contacts),
+        ]
+        for line, made in parts:
+            lines |= {("connections", len(connections) + k): line for k in range(len(made))}
+            connections += made
         whole = [end for one in connections if _of_directions(one) for end in (one["a"], one["b"])]
         for joint in self.turnless:
             self.without_turn(joint, whole)
         scene = {"gravity": self.vector(self.draft.gravity, 0.0), "bodies": self.bodies}
-        return scene | ({"connections": connections} if connections else {})
+        return WrittenScene(scene | ({"connections": connections} if connections else {}), lines)
 
     def named(self, given: str, kind: str) -> str:
         """Return a name that a scene may have, and that nothing else has."""
@@ -152,6 +175,8 @@ class SceneWriting:
 
     def joint(self, joint: DraftJoint) -> list[dict[str, Any]]:
         """Return the connections of a joint."""
+        if min(joint.damping, joint.stiffness) < 0.0:
+            raise no_model(joint.line, f"{shortened(joint.name)} has a negative damping or stiffness")
         name = self.named(joint.name, "joint")
         a = self.place((joint.child, joint.at), name)
         b = self.place((joint.parent, joint.at), name)

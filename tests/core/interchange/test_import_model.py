@@ -68,3 +68,41 @@ def test_more_bodies_than_are_read_are_refused_with_the_line_of_the_first() -> N
     for text in (f"{mjcf}</worldbody></mujoco>", f"{urdf}</robot>"):
         with pytest.raises(InvalidParameter, match=f"line {MOST_BODIES + 2}: it has more than {MOST_BODIES} links"):
             import_model(text)
+
+
+ARMS = f"""<body name="a"><joint axis="1 0 0"/>{INERTIAL}<site name="s" pos="0 0 1"/></body>
+<body name="b" pos="1 0 0"><joint axis="1 0 0"/>{INERTIAL}<site name="t"/></body>"""
+TENDON = '<site site="s"/><site site="t"/></spatial></tendon>'
+
+
+@pytest.mark.parametrize(
+    ("bodies", "more", "line", "says"),
+    [
+        ("<body>\n<freejoint/></body>".replace("</", INERTIAL.replace('"1"', '"-1"') + "</"), "", 1, "mass must be"),
+        (f"\n<body><freejoint/>{INERTIAL.replace('1 1 1', '1 2 4')}</body>", "", 2, "moments of matter"),
+        (f'\n<body><joint damping="-1"/>{INERTIAL}</body>', "", 2, "negative damping or stiffness"),
+        (f'\n<body><joint type="slide" stiffness="-1"/>{INERTIAL}</body>', "", 2, "negative damping or stiffness"),
+        (ARMS, f'<tendon>\n<spatial range="3 -1">{TENDON}', 3, "must have a range that ends above its begin"),
+        (ARMS, f'<tendon>\n<spatial range="-3 -1">{TENDON}', 3, "length must be greater than 0 m"),
+        (ARMS, f'<tendon>\n<spatial stiffness="-1">{TENDON}', 3, "stiffness must be greater than 0"),
+        (ARMS, f'<tendon>\n<spatial damping="-1">{TENDON}', 3, "coefficient must be greater than 0"),
+        (ARMS, '<equality>\n<connect body1="a" body2="a"/></equality>', 3, "connect two different bodies"),
+        (ARMS, '<equality>\n<connect body1="world" body2="world"/></equality>', 3, "connect a body"),
+        ('\n<body><freejoint/><geom size="1" mass="-1"/></body>', "", 2, "must have geometries of matter"),
+        (f"<body><freejoint/>{INERTIAL}</body>" * 101, "", 1, "bodies must have at most 100 entries"),
+    ],
+)
+def test_documents_of_scenes_that_cannot_be_are_refused_with_the_line(
+    bodies: str, more: str, line: int, says: str
+) -> None:
+    with pytest.raises(InvalidParameter, match=f"; line {line}: .*{says}") as fault:
+        import_model(f"<mujoco><worldbody>{bodies}</worldbody>{more}</mujoco>")
+    assert fault.value.path == ("document",)
+
+
+def test_all_parts_that_cannot_be_are_told() -> None:
+    more = f'<tendon>\n<spatial stiffness="-1">{TENDON}<equality>\n<connect body1="a" body2="a"/></equality>'
+    with pytest.raises(InvalidParameter) as fault:
+        import_model(f"<mujoco><worldbody>{ARMS}</worldbody>{more}</mujoco>")
+    told = [(one.path, one.rule.partition("line ")[2][0]) for one in (fault.value, *fault.value.further)]
+    assert sorted(told) == [(("document",), "3"), (("document",), "4")]
