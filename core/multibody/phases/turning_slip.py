@@ -39,7 +39,6 @@ ENDED = 2.0**-72
 """Share of the largest rate below which slip ends."""
 _BITS = 256
 """Precision of the series: more than twice that of pairs, in which its states are stated."""
-
 _MOST_STEPS = 250
 """Steps that one phase of turning slip may take."""
 
@@ -209,17 +208,28 @@ def _moved(series: Sequence[Ball], later: arb_poly) -> list[Ball]:
 
 
 def _length(motion: Expansion, units: Sequence[str], fastest: dict[str, float], tolerance: float) -> Ball:
-    """Return the length of a step: its last terms are a share of the largest rate of their unit at most."""
+    """Return the length of a step: its last terms are a share of the largest rate of their unit, or of a lower term."""
+    # What rests as yet has no rate but what the step itself gains.
+    scales = _scales(motion, units, fastest)
     h = _LONGEST
     for unit, series in zip(units, motion.places, strict=True):
         for k in (len(series) - 2, len(series) - 1):
             # Terms of a slip that is about to end are beyond the range of doubles.
             last = exponent(k * series[k])
-            if last is not None and tolerance * fastest[unit] > 0.0:
+            if last is not None and scales[unit]:
                 # More than the longest, whose power of two may be beyond doubles, is not needed.
-                power = (math.log2(tolerance * fastest[unit]) - last) / (k - 1)
+                power = max((math.log2(tolerance) + scale - last) / (k - j) for j, scale in scales[unit] if j < k)
                 h = min(h, 2.0 ** min(power, math.log2(_LONGEST)))
     return arb(h)
+
+
+def _scales(motion: Expansion, units: Sequence[str], fastest: dict[str, float]) -> dict[str, list[tuple[int, float]]]:
+    """Return by unit the powers of time of places, and the logarithms of base 2 of how fast their terms are."""
+    found = {unit: [(1, math.log2(x))] if x > 0.0 else [] for unit, x in fastest.items()}
+    for unit, series in zip(units, motion.places, strict=True):
+        sizes = ((j, exponent(j * series[j])) for j in range(2, motion.order // 2))
+        found[unit].extend((j, float(size)) for j, size in sizes if size is not None)
+    return found
 
 
 @dataclass(frozen=True)
