@@ -3,7 +3,7 @@
 A motion may pass such a place smoothly, as cranks do that come into line, and steps are too long to meet it. The lines
 of W that may depend on one another are followed on every step. Where P inverts them at a time, W(t) P = I, they keep
 their rank as long as |(W(t + s) - W(t)) P| < 1, which rates and bounds of accelerations show; from there on another P
-does. The stretches on which that holds become shorter in proportion to the time that is left to a place where the rank
+does. Every line counts in units of its largest entry, as lines of different kinds have different units. The stretches on which that holds become shorter in proportion to the time that is left to a place where the rank
 is lost, and never reach beyond it.
 
 Many lines can never depend on others, whatever the places. A line that is the only one with some of the coordinates,
@@ -144,6 +144,7 @@ def first_lost(table: Packed, rows: Integers, starts: Floats, series: Floats) ->
     lines, inverse = np.zeros((len(rows), n)), np.zeros((len(rows), len(rows)))
     pivots, place, speed, moved = np.zeros(n, np.int64), np.zeros(n), np.zeros(n), np.zeros(n)
     entries, change, weights = np.zeros(len(table.lines)), np.zeros(len(rows)), np.zeros(len(rows))
+    sizes = np.zeros(len(rows))
     for step in range(len(series)):
         length = (starts[step + 1, 0] - starts[step, 0]) + (starts[step + 1, 1] - starts[step, 1])
         way, whole = math.copysign(1.0, length), abs(length)
@@ -166,10 +167,12 @@ def first_lost(table: Packed, rows: Integers, starts: Floats, series: Floats) ->
                 r = number[table.lines_at[e, 0]]
                 if r >= 0 and table.binds[e] == 1:
                     lines[r, table.lines_at[e, 1]] = entries[e]
+            for r in range(len(rows)):
+                sizes[r] = np.max(np.abs(lines[r]))
             if not _inverse(lines, inverse, pivots):
                 return step, way * at
             for k in range(len(rows)):
-                weights[k] = np.sum(np.abs(inverse[k]))
+                weights[k] = np.sum(np.abs(inverse[k]) * sizes)
             while True:
                 until = min(at + stretch, whole)
                 for i in range(n):
@@ -183,7 +186,7 @@ def first_lost(table: Packed, rows: Integers, starts: Floats, series: Floats) ->
                     r, k = number[table.lines_at[e, 0]], pivots[table.lines_at[e, 1]]
                     if r >= 0 and k >= 0 and table.binds[e] == 1:
                         change[r] += abs(table.slopes[p, 0]) * moved[table.slopes_at[p, 1]] * weights[k]
-                norm = np.max(change)
+                norm = np.max(change / sizes)
                 if norm < _KEPT:
                     break
                 stretch = (until - at) * max(_LIKELY / norm, SHORTEST)

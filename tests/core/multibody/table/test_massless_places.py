@@ -116,3 +116,18 @@ def test_formulas_name_bodies_and_not_parts_of_names(name: str) -> None:
     pull = {"kind": "force", "place": "disk", "force": ["-2*disk.x", 0]}
     found = solved([0, 0], bodies, *springs, pull)
     np.testing.assert_allclose(columns(found, "bob.position")[0], [[2.0, 0.0]] * 3, atol=1e-14)
+
+
+@pytest.mark.parametrize("far", [100, 10000])
+def test_a_knot_moves_alike_wherever_it_is(far: int) -> None:
+    """Places in units of their distance from the origin make lengths small: it was not known whether rows keep rank."""
+    found = []
+    for x in (0, far):
+        bodies = {
+            "knot": {"mass": 0, "at": [x + 1, 0]},
+            "bob": {"mass": 1, "at": [x + 3, 0], "velocity": [0, 1]},
+        }
+        springs = [spring("one", [x, 0], "knot", 30, "1/2"), spring("other", "knot", "bob", 30, "3/2")]
+        (place,) = columns(solved([0, 0], bodies, *springs), "bob.position")
+        found.append(place - np.array([x, 0]))
+    np.testing.assert_allclose(found[0], found[1], rtol=0, atol=1e-9)
