@@ -368,6 +368,7 @@ TESTED_IN |= {
         ),
         "contacts/test_certificates": "contacts/admissible_forces",
         "contacts/test_shares_in_space": "phases/shared_friction",
+        "phases/test_recurring_bounces": "phases/shared_impulses",
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
             "phases/phase phases/phases "

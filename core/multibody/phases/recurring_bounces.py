@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from flint import arb, arb_mat
+from flint import arb
 
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, enclosed, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import (
@@ -33,6 +33,7 @@ from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.equations.dynamics import accelerations
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.phase import Phase
+from core.multibody.phases.shared_impulses import shared_impulses
 from core.multibody.phases.tracks import Track, Tracks
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.table.connection_effects import Unilateral
@@ -187,7 +188,7 @@ def _tail(
     for n, one in enumerate(every):
         if one.across is not None and not _straight(one, n, found, table, track.q, track.v, acceleration):
             return None
-    impulses = _impulses(found, openings, ratios)
+    impulses = shared_impulses(found, openings, ratios)
     # Of a level bar on two points one takes nothing of an impulse on the other: a share of rounding is none.
     as_known = responses(replace(table, q=list(known)), every, range(len(every)))
     if impulses is None or not _pressed(unilateral, phase, k, as_known, impulses):
@@ -213,26 +214,6 @@ def _sliding(one: Unilateral, slip: Ball) -> Ball:
     if is_zero(slip):
         return ZERO
     return -one.kinetic if slip > 0 else one.kinetic
-
-
-def _impulses(found: Responses, openings: Sequence[Ball], ratios: Sequence[Ball | None]) -> Forces | None:
-    """Return impulses by their lines that raise the rate of the first gap by one, and those of all in proportion.
-
-    None where there are none, or where one of them would pull.
-    """
-    pushes: list[Forces] = []
-    for n, ratio in enumerate(ratios):
-        if ratio is None:
-            return None
-        pushes.append({found.normal[n]: ONE} if ratio == 0 else {found.normal[n]: ONE, found.slips[n]: ratio})
-    matrix = found.among(pushes, [found.normal[n] for n in range(len(pushes))])
-    try:
-        solved = arb_mat(matrix).solve(arb_mat([[x / openings[0]] for x in openings])).entries()
-    except ZeroDivisionError:
-        return None
-    if not all(x > 0 for x in solved):
-        return None
-    return {line: p * x for p, push in zip(solved, pushes, strict=True) for line, x in push.items()}
 
 
 def _slides_on(tail: Accumulation, one: Unilateral, gain: Ball, slip: Ball) -> bool:

@@ -162,3 +162,25 @@ def test_a_woodpecker_comes_down_its_pole_as_the_plain_engine_says() -> None:
     verdict = compared(scene, [0.0, 0.05, 0.11, 0.2])
     assert classes_of(verdict) == "", verdict.differences
     assert verdict.compared > 0
+
+
+@pytest.mark.parametrize("velocity", [[0, 0, 0], [3, 0, 0]])
+@pytest.mark.parametrize(
+    "shape",
+    [{"kind": "disc", "radius": 0.5}, {"kind": "box", "width": 1, "height": 0.6, "depth": 0.4}],
+)
+def test_four_contacts_of_which_three_are_independent_come_to_rest_as_one(shape: Json, velocity: list[float]) -> None:
+    """sqrt(2 h/g) (1 + e)/(1 - e), in space: many shares of an impulse have one effect."""
+    height = 0.2 if shape["kind"] == "disc" else 0.4
+    body = {"mass": 1, "shape": shape, "at": [0, 0, height], "velocity": velocity}
+    floor = {"kind": "contact", "name": "floor", "place": "b", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+    scene = {
+        "gravity": [0, 0, -10],
+        "simultaneous": "together",
+        "bodies": {"b": body},
+        "connections": [{**floor, "restitution": 0.5}],
+    }
+    found = settling(answered(scene, 1.0))
+    assert found
+    for time, error in found.values():
+        assert abs(time - 0.6) <= error + 1e-15
