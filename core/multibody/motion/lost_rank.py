@@ -3,8 +3,8 @@
 A motion may pass such a place smoothly, as cranks do that come into line, and steps are too long to meet it. The lines
 of W that may depend on one another are followed on every step. Where P inverts them at a time, W(t) P = I, they keep
 their rank as long as |(W(t + s) - W(t)) P| < 1, which rates and bounds of accelerations show; from there on another P
-does. Every line counts in units of its largest entry, as lines of different kinds have different units. The stretches on which that holds become shorter in proportion to the time that is left to a place where the rank
-is lost, and never reach beyond it.
+does. The stretches on which that holds become shorter in proportion to the time that is left to a place where the rank
+is lost, and never reach beyond it. Every line counts in units of its largest entry: their own units differ.
 
 Many lines can never depend on others, whatever the places. A line that is the only one with some of the coordinates,
 among those left, can do so only where all its entries of these vanish: never, if one of these is a constant, or if they

@@ -1,9 +1,9 @@
 """How contacts that bounce as one share their impulses.
 
-More contacts than are independent, as the four corners of a box that falls flat, have many shares with one effect: where
-the effects e_n of impulses are dependent, every combination of them that is zero may be added. Of these shares the
-smallest are taken, those of a box that falls level being equal. (A. Ben-Israel, T. N. E. Greville, "Generalized
-Inverses", section 3.2: the solution of least norm has no part along the null space.)
+More contacts than are independent, as the four corners of a box that falls flat, have many shares with one effect. Where
+the effects of impulses are dependent, every combination of them that is zero may be added: the smallest shares are
+taken, those of a box that falls level being equal. (A. Ben-Israel, T. N. E. Greville, "Generalized Inverses", section
+3.2: the solution of least norm has no part along the null space.)
 """
 
 from __future__ import annotations
