@@ -1,6 +1,6 @@
 """How contacts that bounce as one share their impulses.
 
-More contacts than are independent, as the four corners of a box that falls flat, have many shares with one effect. Where
+More contacts than are independent, as the corners of a box that falls flat, have many shares with one effect. Where
 the effects of impulses are dependent, every combination of them that is zero may be added: the smallest shares are
 taken, those of a box that falls level being equal. (A. Ben-Israel, T. N. E. Greville, "Generalized Inverses", section
 3.2: the solution of least norm has no part along the null space.)
