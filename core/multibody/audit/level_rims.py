@@ -98,7 +98,13 @@ def level_rim(
     places = f"{name}.{len(outline.corners) * len(QUARTERS)}"
     if not leaning < LEVEL if answered is None else not (leaning < 2.0 * LEVEL and places in answered):
         return None
-    c, s = (1.0, 0.0) if turns is None or not turns[1] else turns[:2] / np.linalg.norm(turns[:2])
+    moves = bodies[body].velocity
+    along = np.array([1.0, 0.0, 0.0])
+    if turns is not None and np.any(turns[:2]):
+        along = turns
+    elif moves is not None and np.linalg.norm((axes.T @ moves)[:2]) > LEVEL * np.linalg.norm(moves):
+        along = axes.T @ moves
+    c, s = along[:2] / np.linalg.norm(along[:2])
     sides = [(radius * (c * x - s * y), radius * (s * x + c * y)) for x, y in QUARTERS]
     tips = [
         Tip(Place(body, (corner.offset[0] + x, corner.offset[1] + y, corner.offset[2])))

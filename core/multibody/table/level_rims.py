@@ -1,10 +1,11 @@
 """Rims of discs and cylinders that start level: four places of each touch a plane, as the corners of a box do.
 
 A level rim touches along all of itself. Four places of it are on two diameters at right angles, of which the first is
-that about which the body turns at the start, or the first body axis. One of the four is the lowest as long as one of
-these diameters stays level: while the rim lies, slides or falls flat, and while it tips about one of them. A load
-within the square of the places holds the rim level. Where a motion tips it in another way its lowest point is none of
-them, and the motion ends; a load between the square and the rim ends it, too, because they would let it tip.
+that about which the body turns at the start, else that along which it moves, or the first body axis. One of the four is
+the lowest as long as one of these diameters stays level: while the rim lies, slides or falls flat, and while it tips
+about one of them. A load within the square of the places holds the rim level. Where a motion tips it in another way its
+lowest point is none of them, and the motion ends; a load between the square and the rim ends it, too, because they
+would let it tip.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def with_places(measures: Measures, name: str, side: Side, n: Sequence[Poly], pa
     if not square < LEVEL**2:
         return side
     assert side.body is not None
-    c, s = _diameter(measures, side.body)
+    c, s = _diameter(measures, side.body, axes)
     radius = side.semi_axes[0]
     offsets = [
         (corner[0] + radius * (c * x - s * y), corner[1] + radius * (s * x + c * y), corner[2])
@@ -54,12 +55,31 @@ def with_places(measures: Measures, name: str, side: Side, n: Sequence[Poly], pa
     return replace(side, points=points, offsets=offsets, radius=ZERO, semi_axes=())
 
 
-def _diameter(measures: Measures, body: str) -> tuple[Ball, Ball]:
-    """Return the direction in body axes about which a level body turns at the start, beside its spin."""
-    written = measures.coordinates.scene.bodies[body].angular_velocity
-    if written is None:
-        return ONE, ZERO
-    x, y, _ = measures.numerals.vector(written, ("bodies", body, "angular_velocity"), 3)
+def _diameter(measures: Measures, body: str, axes: Sequence[Sequence[int]]) -> tuple[Ball, Ball]:
+    """Return the direction in body axes about which a level body turns at the start, beside its spin.
+
+    Without such a turn it is that in which the body moves along the plane: friction tips it about the other diameter.
+
+    Parameters
+    ----------
+    axes : sequence of sequence of int
+        Coordinates of the body axes.
+    """
+    written, q = measures.coordinates.scene.bodies[body], measures.table.q
+    if written.angular_velocity is not None:
+        x, y, _ = measures.numerals.vector(written.angular_velocity, ("bodies", body, "angular_velocity"), 3)
+        if not (is_zero(x) and is_zero(y)):
+            return _unit(x, y)
+    if written.velocity is not None:
+        moves = measures.numerals.vector(written.velocity, ("bodies", body, "velocity"), 3)
+        x, y = (sum((v * q[i] for v, i in zip(moves, axis, strict=True)), ZERO) for axis in axes[:2])
+        # Of what falls, a direction along the plane that is rounding is none.
+        if x * x + y * y > LEVEL**2 * sum((v * v for v in moves), ZERO):
+            return _unit(x, y)
+    return ONE, ZERO
+
+
+def _unit(x: Ball, y: Ball) -> tuple[Ball, Ball]:
     if is_zero(y):
         return ONE, ZERO
     size = (x * x + y * y).sqrt()

@@ -44,6 +44,20 @@ def test_what_lies_slides_to_rest_by_friction(body: dict[str, Any]) -> None:
     assert column(answer, "floor.friction.x").values[0] == pytest.approx(-0.25 * body["mass"] * G * 0.6, rel=1e-13)
 
 
+@pytest.mark.parametrize("axes", [None, [[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]]])
+def test_a_can_slides_upright_along_any_direction(axes: Any) -> None:
+    """Friction at the height h/2 below its centre moves its load by mu h/2 < r: it stops after v/(mu g)."""
+    can = (
+        CYLINDER | {"velocity": [0.6, 0.1, 0], "angular_velocity": [0, 0, 0]} | ({} if axes is None else {"axes": axes})
+    )
+    answer = solve_scene(read(scene(can, friction=0.48)), [1.0])
+    assert answer.problem is None
+    speed, slowed = math.hypot(0.6, 0.1), 0.48 * G
+    assert [event.time for event in answer.events] == pytest.approx([speed / slowed] * 4, rel=1e-13)
+    far = np.array([0.6, 0.1]) * speed / (2 * slowed)
+    assert column(answer, "body.position").values[0] == pytest.approx([*far, H / 2], abs=1e-13)
+
+
 def test_a_coin_that_falls_flat_lands_along_its_rim_at_once_and_goes_on_spinning() -> None:
     falls = COIN | {"at": [0, 0, 0.45], "velocity": [1, 0, 0], "angular_velocity": [0, 0, 4]}
     answer = solve_scene(read(scene(falls, restitution=0.5)), [0.4, 2.0])
