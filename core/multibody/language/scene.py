@@ -122,9 +122,14 @@ class Scene:
         return any(map(self.switches_in, self.connections))
 
     def switches_in(self, connection: Connection) -> bool:
-        """Return whether a formula of a connection may have several pieces, by its functions or tables."""
+        """Return whether a formula of a connection may have several pieces, by what it and its `let` name."""
         kinked = {*SWITCHING, *(name for name, value in self.let.items() if is_table(value))}
-        return any(kinked & names_in(text) for text in connection.formulas() if isinstance(text, str))
+        used, texts = set[str](), [text for text in connection.formulas() if isinstance(text, str)]
+        while texts:
+            named = names_in(texts.pop()) - used
+            used |= named
+            texts.extend(value for value in map(self.let.get, named) if isinstance(value, str))
+        return not kinked.isdisjoint(used)
 
     @property
     def continues(self) -> bool:
