@@ -21,6 +21,7 @@ from core.interchange.left_out import LeftOutOfScene
 from core.interchange.mjcf_geometries import Geometries, numbers_of
 from core.interchange.mjcf_tree import Tree, TreeBody, rates_of
 from core.interchange.start_in_numbers import NumericScene
+from core.multibody.formulation.unused_names import unused
 from core.multibody.language.connection import Connection, Surroundings, carrier_of
 from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.forces import AppliedForce, Damper, Spring, Torque, TorsionSpring
@@ -33,6 +34,9 @@ STEP = 0.0005
 
 MARGIN = "1e-12"
 """Gap up to which MuJoCo lets act what touches or is taut (m): what does so at the start does it to rounding."""
+
+WORLD = "world"
+"""The name of the ground in MJCF, which no body may have."""
 
 WRITTEN = {
     *("a", "b", "place", "on", "axis", "axes", "slope", "direction", "length", "through", "name", "stiffness"),
@@ -79,6 +83,12 @@ class _Writing:
         }
         self.elements: dict[str | None, ElementTree.Element] = {None: self.world}
         self.joints: dict[str, list[ElementTree.Element]] = {}
+        self.joint_names: set[str] = set()
+        self.names = {name: name for name in numbers.bodies}
+        if WORLD in self.names:
+            self.names[WORLD] = unused(f"{WORLD}-", self.names, first="1")
+            why = f"the ground has this name in MJCF: the body is called {self.names[WORLD]}"
+            self.leave_out(("bodies", WORLD), WORLD, why, changes_motion=False)
         self.sites: dict[tuple[str | None, tuple[float, ...]], str] = {}
         self.geometries = Geometries(numbers, self.tree, self.elements)
         rates: list[float] = []
@@ -122,7 +132,7 @@ class _Writing:
         if body.parent is not None:
             rotation = self.tree.bodies[body.parent].rotation
         place, turn = rotation.T @ (own.centre - parent), rotation.T @ body.rotation
-        attributes = {"name": body.name, "pos": numbers_of(place)}
+        attributes = {"name": self.names[body.name], "pos": numbers_of(place)}
         if not np.array_equal(turn, np.eye(3)):
             attributes["quat"] = numbers_of(as_quaternion(turn))
         element = self._add(self.elements[body.parent], "body", **attributes)
@@ -131,6 +141,8 @@ class _Writing:
         self.joints[body.name] = []
         for k, joint in enumerate(body.joints):
             called = body.name if len(body.joints) == 1 else f"{body.name}-{k + 1}"
+            called = unused(called, self.joint_names)
+            self.joint_names.add(called)
             if joint.kind == "free":
                 self.joints[body.name].append(self._add(element, "freejoint", name=called))
                 continue
@@ -208,14 +220,15 @@ class _Writing:
             first, second = second, first
         assert first is not None, "a connection of the ground with itself is refused"
         inside = self.tree.bodies[first].rotation.T @ (at - self.numbers.bodies[first].centre)
-        bodies = {"body1": first} | ({} if second is None else {"body2": second})
+        bodies = {"body1": self.names[first]} | ({} if second is None else {"body2": self.names[second]})
         self._add(self.sections["equality"], "connect", name=name, anchor=numbers_of(inside), **bodies)
 
     @write.register
     def _(self, one: Weld, name: str, path: Path) -> None:
         if path[1] not in self.tree.joined:
             two = [self.numbers.place(end, path)[0] for end in (one.a, one.b)]
-            bodies = {f"body{k + 1}": body for k, body in enumerate(sorted(two, key=lambda x: x is None)) if body}
+            held = sorted(two, key=lambda x: x is None)
+            bodies = {f"body{k + 1}": self.names[body] for k, body in enumerate(held) if body}
             self._add(self.sections["equality"], "weld", name=name, **bodies)
 
     @write.register

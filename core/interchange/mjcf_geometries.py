@@ -10,7 +10,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import InvalidParameter, NotApplicable, Path
-from core.interchange.frames import as_quaternion
+from core.interchange.frames import as_quaternion, unit
 from core.interchange.mjcf_tree import Tree
 from core.interchange.start_in_numbers import NumericScene
 from core.multibody.language.connection import carrier_of
@@ -55,7 +55,7 @@ class Geometries:
         else:
             x, y, _ = self.numbers.angle(on.get("slope", 0), (*path, "slope"))
             normal = rotation @ np.array([-y, x, 0.0])
-        return name, at, normal / np.linalg.norm(normal)
+        return name, at, unit(normal)
 
     def of(self, place: object, path: Path, normal: Floats | None) -> str:
         """Add what touches at a place: the shape of a body, its rim, or a ball for a point."""

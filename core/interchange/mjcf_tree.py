@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from core.arrays import Floats
+from core.interchange.frames import unit
 from core.interchange.start_in_numbers import NumericBody, NumericScene
 from core.multibody.language.connection import Connection, carrier_of
 from core.multibody.language.contacts import Rolling
@@ -178,16 +179,16 @@ class Tree:
         if isinstance(one, Weld) or not rigid:
             return []
         if isinstance(one, Cylindrical):
-            axis = _unit(numbers.vector(one.axis, (*path, "axis")))
+            axis = unit(numbers.vector(one.axis, (*path, "axis")))
             return [TreeJoint("slide", at, axis), TreeJoint("hinge", at, axis)]
         if isinstance(one, Universal):
-            axes = [_unit(numbers.vector(axis, (*path, "axes"))) for axis in one.axes]
+            axes = [unit(numbers.vector(axis, (*path, "axes"))) for axis in one.axes]
             # MuJoCo's first joint is fixed in the parent.
             return [TreeJoint("hinge", at, axis) for axis in (axes[::-1] if edge.a == child else axes)]
         if numbers.plane:
             return [TreeJoint("hinge", at, NORMAL)]
         if isinstance(one, Pin) and one.axis is not None:
-            return [TreeJoint("hinge", at, _unit(numbers.vector(one.axis, (*path, "axis"))))]
+            return [TreeJoint("hinge", at, unit(numbers.vector(one.axis, (*path, "axis"))))]
         return [TreeJoint("ball", at, NORMAL)]
 
     def _ways(self, one: GuideCurve, edge: _Edge) -> list[Floats]:
@@ -195,18 +196,18 @@ class Tree:
         path, on = ("connections", edge.number, "on"), one.on
         rotation = self.numbers.carrier(edge.b).rotation
         if "normal" in on:
-            normal = rotation @ _unit(self.numbers.vector(on["normal"], (*path, "normal")))
+            normal = rotation @ unit(self.numbers.vector(on["normal"], (*path, "normal")))
             least = np.eye(3)[int(np.argmin(np.abs(normal)))]
-            first = _unit(np.cross(normal, least))
+            first = unit(np.cross(normal, least))
             return [first, np.cross(normal, first)]
         if "direction" in on:
-            return [rotation @ _unit(self.numbers.vector(on["direction"], (*path, "direction")))]
+            return [rotation @ unit(self.numbers.vector(on["direction"], (*path, "direction")))]
         return [rotation @ self.numbers.angle(on.get("slope", 0), (*path, "slope"))]
 
     def _along(self, one: Slider, edge: _Edge) -> Floats:
         path = ("connections", edge.number)
         if one.direction is not None:
-            inside = _unit(self.numbers.vector(one.direction, (*path, "direction")))
+            inside = unit(self.numbers.vector(one.direction, (*path, "direction")))
         else:
             inside = self.numbers.angle(0 if one.slope is None else one.slope, (*path, "slope"))
         return self.numbers.carrier(edge.b).rotation @ inside
@@ -231,8 +232,3 @@ def rates_of(numbers: NumericScene, tree: Tree, body: TreeBody) -> list[float]:
             theirs = parent.velocity + np.cross(carried, joint.at - parent.centre)
             found.append(float(joint.axis @ (mine - theirs)))
     return [float(x) for x in found]
-
-
-def _unit(direction: Floats) -> Floats:
-    unit: Floats = direction / np.linalg.norm(direction)
-    return unit

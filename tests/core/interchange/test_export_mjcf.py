@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import fields
 from functools import cache
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from core.interchange.export_mjcf import export_mjcf
+from core.interchange.import_model import import_model
 from core.interchange.left_out import LeftOutOfScene
 from core.multibody.language.reading import scene_from
 from core.multibody.language.scene import Scene
@@ -128,3 +130,37 @@ def test_names_and_numbers_are_those_of_the_scene() -> None:
     text, _ = exported("double-pendulum")
     assert '<body name="two" pos="' in text
     assert 'diaginertia="0.0833 0.0833 0.0833"' in text
+
+
+MOMENTS = {"moments": [1, 1, 1]}
+
+
+def test_joints_have_names_of_their_own() -> None:
+    """The joints of a free particle `a`, which are three, beside that of a body `a-1`."""
+    for order in (1, -1):
+        bodies = {"a": {"mass": 1, "at": [0, 0, 3]}, "a-1": {"mass": 1, "at": [2, 0, 0], **MOMENTS}}
+        slider = {"kind": "slider", "a": "a-1", "b": [2, 0, 0], "direction": [1, 0, 0]}
+        text, _ = export_mjcf(scene_from({"bodies": dict([*bodies.items()][::order]), "connections": [slider]}))
+        names = [one.get("name") for one in ElementTree.fromstring(text).iter("joint")]
+        assert len(names) == len(set(names)) == 4
+
+
+def test_a_body_called_world_is_not_the_ground() -> None:
+    """Ends of a loop name it too: a ring of two bodies."""
+    bodies = {name: {"mass": 1, "at": [k, 0, 0], **MOMENTS} for k, name in enumerate(("world", "b"))}
+    pins = [{"kind": "pin", "a": "world", "b": "b.p", "axis": [0, 0, 1]}, {"kind": "weld", "a": "b", "b": "world"}]
+    bodies["b"]["places"] = {"p": [-1, 0, 0]}
+    text, left_out = export_mjcf(scene_from({"bodies": bodies, "connections": pins}))
+    assert (left_out[0].pointer, left_out[0].changes_motion) == ("/bodies/world", False)
+    assert set(import_model(text).scene["bodies"]) == {"world-1", "b"}
+    named = {one.get(key) for one in ElementTree.fromstring(text).iter() for key in ("body1", "body2")}
+    assert named == {None, "world-1", "b"}
+
+
+def test_directions_of_any_length_are_written() -> None:
+    for size in ("1e-200", "1e200"):
+        pin = {"kind": "pin", "a": "a", "b": [0, 0, 0], "axis": [size, size, 0]}
+        bodies = {"a": {"mass": 1, "at": [0, 0, 0], **MOMENTS}}
+        text, _ = export_mjcf(scene_from({"bodies": bodies, "connections": [pin]}))
+        [joint] = ElementTree.fromstring(text).iter("joint")
+        assert [float(x) for x in joint.get("axis", "").split()] == pytest.approx([0.5**0.5, 0.5**0.5, 0])
