@@ -48,7 +48,7 @@ def add_inertia(body: DraftBody, element: Element, geoms: Sequence[Element], com
         try:
             properties = Composite(tuple(parts)).mass_properties()
         except InvalidParameter as wrong:
-            raise fault(element, f"must have geometries of matter: {wrong.detail}") from wrong
+            raise fault(element, f"must have geometries that {wrong.rule}") from wrong
         body.mass = float(properties.exact_mass)
         body.centre = vector([float(x) for x in properties.exact_center_of_mass])
         body.tensor = np.array([[float(x) for x in row] for row in properties.exact_inertia])

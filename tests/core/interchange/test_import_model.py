@@ -88,7 +88,7 @@ TENDON = '<site site="s"/><site site="t"/></spatial></tendon>'
         (ARMS, f'<tendon>\n<spatial damping="-1">{TENDON}', 3, "coefficient must be greater than 0"),
         (ARMS, '<equality>\n<connect body1="a" body2="a"/></equality>', 3, "connect two different bodies"),
         (ARMS, '<equality>\n<connect body1="world" body2="world"/></equality>', 3, "connect a body"),
-        ('\n<body><freejoint/><geom size="1" mass="-1"/></body>', "", 2, "must have geometries of matter"),
+        ('\n<body><freejoint/><geom size="1" mass="-1"/></body>', "", 2, "must have geometries that weigh more"),
         (f"<body><freejoint/>{INERTIAL}</body>" * 101, "", 1, "bodies must have at most 100 entries"),
     ],
 )
