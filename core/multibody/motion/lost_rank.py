@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 import numpy as np
 
@@ -45,20 +45,21 @@ KEPT, UNKNOWN = math.inf, math.nan
 def lines_that_may_depend(table: Table, chosen: Sequence[int]) -> Integers:
     """Return which of the chosen rows may depend on one another at some place, by their numbers among those."""
     left = {number: table.rows[r] for number, r in enumerate(chosen)}
+    heavy = {i for key in table.mass for i in key}
     while True:
         count = Counter(j for row in left.values() for j in row.rates)
         for number, row in left.items():
-            if _never_vanishes(row, [j for j in row.rates if count[j] == 1], len(table.names)):
+            if _never_vanishes(row, [j for j in row.rates if count[j] == 1], len(table.names), heavy):
                 del left[number]
                 break
         else:
             return np.array(sorted(left), dtype=np.int64)
 
 
-def _never_vanishes(row: Row, own: Sequence[int], count: int) -> bool:
+def _never_vanishes(row: Row, own: Sequence[int], count: int, heavy: Set[int]) -> bool:
     """Return whether the entries of a line at some of `count` coordinates never vanish at once while its measure does.
 
-    That they do where its length is zero is left aside.
+    That they do where its length, which has no mass, is zero is left aside.
     """
     entries = [row.rates[j] for j in own]
     if any(set(poly) == {()} and not is_zero(poly[()]) for poly in entries):
@@ -72,7 +73,8 @@ def _never_vanishes(row: Row, own: Sequence[int], count: int) -> bool:
     for i, (line, value) in vanishing.pivots.items():
         places[i] = combined((value, constant(ONE)), (-ONE, {(k,): x for k, x in line.items()}))
     rest = substituted(row.measure, places)
-    return {key for key, x in rest.items() if not is_zero(x)} <= {()}
+    keys = {key for key, x in rest.items() if not is_zero(x)}
+    return keys == {()} or (not keys and not heavy.issuperset(row.rates))
 
 
 @kernel()

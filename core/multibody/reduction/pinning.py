@@ -31,7 +31,9 @@ def pin(state: Reduced) -> bool:
         live = [
             row
             for row in table.rows
-            if row.drag or any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
+            if row.drag
+            or any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
+            or _lets_go(table, row, pinned)
         ]
         leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
         if not leave:
@@ -94,6 +96,15 @@ def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
         else:
             return False
     return is_zero(total)
+
+
+def _lets_go(table: Table, row: Row, pinned: set[int]) -> bool:
+    """Return whether a row keeps one coordinate at rest alone, and leaves it free where others vanish.
+
+    So does x y = 0 with x = 0 where y = 0: there the motion may go on along either.
+    """
+    holding = [poly for j, poly in row.rates.items() if j in pinned and not _vanishes(table, poly, pinned)]
+    return len(holding) == 1 and any(key and key[0] not in pinned for key in holding[0])
 
 
 def _stays(table: Table, i: int, pinned: set[int], coupled: Iterable[tuple[int, ...]], live: list[Row]) -> bool:

@@ -69,6 +69,8 @@ def on_surface(measures: Measures, name: str, connection: GuideCurve, path: Path
         measures.force(f"{name}.{axis}", [(row, constant(-ONE))])
         own[axis] = coordinate(index)
     value = _rows(measures, name, formula, own, where)
+    if all(is_zero(x) for key, x in value.items() if key):
+        raise InvalidParameter(where, f"change with {' or '.join(axes)}, and not have one value everywhere")
     missed = evaluated(value, measures.table.q)
     meant = CLOSE * (ONE + change_by(value, measures.table.q, sizes(measures.table, measures.table.q)))
     if not (measures.sketch or abs(missed) < meant):

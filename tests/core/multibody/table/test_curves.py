@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
@@ -165,3 +166,28 @@ def test_what_is_no_track_is_refused(at: list[Any], on: dict[str, Any], pointer:
     with pytest.raises(InvalidParameter, match=rule) as refused:
         solved(at, on)
     assert refused.value.path == ("connections", 0, "on", *pointer)
+
+
+@pytest.mark.parametrize("formula", ["x*y", "-3*x*y"])
+@pytest.mark.parametrize("space", [False, True])
+def test_a_motion_ends_where_branches_of_its_surface_cross(formula: str, space: bool) -> None:
+    # It falls along x = 0 from y = 1, to y = 0 in sqrt(2/g).
+    rest = [0] if space else []
+    bead = {"mass": 1, "at": [0, 1, *rest]}
+    track = {"kind": "track", "place": "a", "on": {"surface": formula}}
+    scene = {"bodies": {"a": bead}, "gravity": [0, -9.81, *rest], "connections": [track]}
+    answer = solve_scene(scene_from(scene), [0.0, 1.0])
+    end = answer.ended
+    assert end is not None
+    assert end.kind == "singular"
+    assert abs(end.time - math.sqrt(2 / 9.81)) <= end.error
+
+
+@pytest.mark.parametrize(
+    ("formula", "rule"), [("0*x", "change with x or y"), ("x-x", "change with x or y"), ("x*y", "singular place")]
+)
+def test_a_surface_without_a_gradient_at_the_start_is_refused(formula: str, rule: str) -> None:
+    track = {"kind": "track", "place": "a", "on": {"surface": formula}}
+    scene = {"bodies": {"a": {"mass": 1, "at": [0, 0]}}, "gravity": [0, -9.81], "connections": [track]}
+    with pytest.raises(InvalidParameter, match=rule):
+        solve_scene(scene_from(scene), [0.0, 1.0])
