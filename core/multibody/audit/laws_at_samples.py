@@ -178,34 +178,38 @@ class _Connection:
 
     def check_gaps(self, gaps: Mapping[str, Numbers]) -> None:
         """Keep gaps open, those that are closed at zero, and their forces pushing; hold friction to its law."""
-        connection = self.connection
         for force, found in gaps.items():
-            steps = connection.steps(force)
-            if len(steps) > 1:
-                # Whole turns of several drums can make any length.
-                continue
-            step = steps[0] if steps else 0.0
-
-            def wound(gap: Numbers, step: float = step) -> Numbers:
-                return gap - step * np.round(gap / step) if step else gap
-
-            def measure(at: Samples, force: str = force) -> Numbers:
-                return wound(connection.gaps(at.placement)[force])
-
-            def change(at: Samples, force: str = force) -> Numbers:
-                return connection.gaps(moved(at.placement, at.of(connection.bodies), in_time=True))[force].imag / STEP
-
-            state, value = self.states.get(force), found[: len(self.samples.times)]
-            gap = wound(value.real)
-            if not step:
-                self._hold(f"gap of {force} open", measure, self.size, gap, one_sided=True)
-            closed = connection.closed(state, len(self.samples.times))
-            if closed is not None and closed.any():
-                self._hold(f"gap of {force} closed", measure, self.size, gap, rows=closed)
-                if self.known:
-                    self._hold(f"rate of gap of {force} closed", change, self.speed, value.imag / STEP, rows=closed)
+            # Both ways around one drum are one step.
+            steps = {abs(step) for step in self.connection.steps(force)}
+            state = self.states.get(force)
+            # Whole turns of several drums can make any length.
+            if len(steps) <= 1:
+                self._check_gap(force, found, state, max(steps, default=0.0))
             if force in self.samples.forces:
                 self._check_force(force, state)
+
+    def _check_gap(self, force: str, found: Numbers, state: Numbers | None, step: float) -> None:
+        """Keep a gap open, or at zero, but for whole steps of it."""
+        connection = self.connection
+
+        def wound(gap: Numbers) -> Numbers:
+            return gap - step * np.round(gap / step) if step else gap
+
+        def measure(at: Samples) -> Numbers:
+            return wound(connection.gaps(at.placement)[force])
+
+        def change(at: Samples) -> Numbers:
+            return connection.gaps(moved(at.placement, at.of(connection.bodies), in_time=True))[force].imag / STEP
+
+        value = found[: len(self.samples.times)]
+        gap = wound(value.real)
+        if not step:
+            self._hold(f"gap of {force} open", measure, self.size, gap, one_sided=True)
+        closed = connection.closed(state, len(self.samples.times))
+        if closed is not None and closed.any():
+            self._hold(f"gap of {force} closed", measure, self.size, gap, rows=closed)
+            if self.known:
+                self._hold(f"rate of gap of {force} closed", change, self.speed, value.imag / STEP, rows=closed)
 
     def _check_force(self, force: str, state: Numbers | None) -> None:
         value = self.samples.forces[force]
