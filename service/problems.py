@@ -54,6 +54,9 @@ class ProblemType:
         return f"/v1/errors#{self.code}"
 
 
+OVERDUE = "deadline-exceeded"
+"""Of a computation that took longer than it may."""
+
 REGISTRY: Mapping[str, ProblemType] = {
     entry.code: entry
     for entry in (
@@ -196,11 +199,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             "Other requests are not affected. Send the request again.",
         ),
         ProblemType(
-            "deadline-exceeded",
+            OVERDUE,
             503,
             "The computation took longer than it may",
-            "Send the request with the header `Prefer: respond-async`: it is then answered in the background, as a "
-            "study of one. Or request fewer samples, a lower accuracy, or a narrower range of what is looked for.",
+            "Where the detail says so, send the request with the header `Prefer: respond-async`: it is then answered "
+            "in the background, as a study of one. Or request fewer samples, a lower accuracy, or a narrower range of "
+            "what is looked for.",
         ),
         ProblemType(
             "no-room",

@@ -13,7 +13,7 @@ import numpy as np
 from core.arrays import Floats
 from core.assessment.typed_entry import LONGEST_ENTRY, number_with_unit, typed_entry
 from core.assessment.typed_number import Locale
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, Path
 from core.formulas import LONGEST_FORMULA, names_in
 
 MOST_CLAIMS = 100
@@ -23,6 +23,13 @@ LONGEST_TEXT = 200
 
 KEYS = ("value", "unit", "times", "formula", "text")
 NUMBERS = {float, int}
+
+
+STABILITY = {
+    **dict.fromkeys(("stabil", "stable", "estable"), True),
+    **dict.fromkeys(("instabil", "labil", "unstable", "instable", "inestable"), False),
+}
+"""What is typed of an equilibrium in German, English, French and Spanish; elsewhere these may be words of an answer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +131,17 @@ class Claim:
             return self
         found = number_with_unit(formula, unit)
         return self if found is None else replace(self, value=found[0], unit=found[1], formula=None)
+
+    @property
+    def is_phrase(self) -> bool:
+        """Whether several words were typed, of which none is meant as a quantity."""
+        words = self.value.split() if isinstance(self.value, str) else []
+        return len(words) > 1 and all(word.isalpha() for word in words)
+
+    def as_truth(self, path: Path) -> Claim:
+        """Return the claim with true or false for a typed word that says so of the field at a path."""
+        said = STABILITY.get(self.value.lower()) if path[-1] == "stable" and isinstance(self.value, str) else None
+        return self if said is None else replace(self, value=said, formula=None)
 
 
 def _text(entry: dict[str, Any], name: str, longest: int) -> str | None:

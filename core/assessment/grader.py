@@ -137,6 +137,8 @@ class Grader:
     def _claim(self, pointer: str, claim: Claim) -> JudgedClaim:
         path = steps_of(pointer)
         reference = self._reference(pointer, path, claim.times)
+        if type(reference.value) is bool:
+            claim = claim.as_truth(path)
         # A word that was typed may be either.
         if claim.formula is not None:
             claim = claim.as_quantity(reference.unit, self._parameters)
@@ -184,6 +186,8 @@ class Grader:
         try:
             return Formula.read(text, self._parameters)
         except InvalidParameter as fault:
+            if claim.is_phrase:
+                raise EntryFault(claim.field, "be a number or a formula", sentence=wanted_form(reference)) from None
             sentence = (
                 unknown_name(fault.name, self._parameters)
                 if isinstance(fault, UnknownName)

@@ -9,7 +9,7 @@ import re
 
 from core.assessment.feedback.entry_fault import EntryFault
 from core.assessment.feedback.languages import Sentence
-from core.assessment.typed_number import WITH_COMMA, Locale
+from core.assessment.typed_number import DIGITS, WITH_COMMA, Locale
 from core.formulas import NAMES_OF_FUNCTIONS
 
 _SIGNS = str.maketrans(
@@ -33,6 +33,8 @@ _FUNCTIONS = {
 }
 """Functions by what they are called in French and Spanish, too."""
 _CALL = re.compile(r"(?<![\w.])([A-Za-z]+\d?)(?=\s*\()")
+_OF_DEGREES = re.compile(rf"(?<![\w.])(sin|cos|tan|sen|tg)\s*(?:\(\s*(-?{DIGITS})\s*°\s*\)|({DIGITS})\s*°)")
+"""Functions of a number of degrees, with brackets or without: ``tan(25°)``, ``tan 25°``."""
 _INVERSE = re.compile(r"(?<![\w.])(sin|cos|tan)\s*(?:\^\s*(?:-1|\(\s*-1\s*\))|⁻¹)(?=\s*\()")
 _PI = re.compile(r"(?<![^\W\d_])P[iI](?![^\W_])")
 
@@ -58,6 +60,7 @@ def with_plain_signs(text: str, locale: Locale | None) -> str:
     if lowered := _LOWERED_EXPONENT.search(entry):
         raise _lost_exponent(lowered[0])
     entry = _POINT_BEFORE_TEN.sub(lambda found: _scaled(found, locale), entry)
+    entry = _OF_DEGREES.sub(lambda found: f"{found[1]}({found[2] or found[3]}*pi/180)", entry)
     entry = _CALL.sub(lambda found: _FUNCTIONS.get(found[1].lower(), found[1]), _INVERSE.sub(r"a\1", entry))
     return _PI.sub("pi", entry)
 

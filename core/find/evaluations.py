@@ -155,6 +155,10 @@ class Curve:
         """Return what is answered with a value of the input."""
         return self._evaluations.at((x,))
 
+    def answer(self, x: float) -> Mapping[str, Any]:
+        """Return the whole answer at a value of the input, where there is one."""
+        return self._evaluations.answer((x,))
+
     def value(self, x: float) -> Value | None:
         """Return the figure, None where the answer has none or the question is refused."""
         values = self.sample(x).values

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,23 @@ def events_within(answer: Any) -> list[str]:
     events = inside(answer, EVENTS[0]) or ()
     named = dict.fromkeys(f"{inside(one, 'kind')} {inside(one, 'name') or ''}".strip() for one in events)
     return [*named][:MOST_EVENTS_LISTED]
+
+
+def names_nothing(answer: Any, path: Path) -> bool:
+    """Return whether a path has a name that no answer to the question has, whatever its numbers.
+
+    Fields of an answer, and what lists hold, may come and go; names within its fields are those of the request.
+    """
+    found = answer
+    for k, step in enumerate(path):
+        if isinstance(step, int) or found is None:
+            return False
+        inner = inside(found, step)
+        if inner is None and k:
+            known = step in found if isinstance(found, Mapping) else hasattr(found, step)
+            return not known and (isinstance(found, Mapping) or is_dataclass(found))
+        found = inner
+    return False
 
 
 def _pointers(document: Any, wanted: Callable[[Any], bool]) -> list[str]:

@@ -13,7 +13,7 @@ from core.errors import InvalidParameter, MechanicsError, pointer_of
 from core.find.borders import FIRST, REFUSED, borders_of, case_of, jumps_of
 from core.find.evaluations import Curve, Evaluations
 from core.find.extremes import extremes_of
-from core.find.figures import Value, events_within, lists_within, single_figures
+from core.find.figures import Value, events_within, lists_within, names_nothing, single_figures
 from core.find.infinite import infinities_of
 from core.find.roots import roots_of
 from core.find.scanning import FIRST as FEW
@@ -84,7 +84,7 @@ def found(
     if len(varied) > 1:
         return _several(evaluations, conditions), evaluations
     curve, condition = Curve(evaluations), conditions[0]
-    if not _look(curve) and not condition.of_event:
+    if not _look(curve, condition.figure) and not condition.of_event:
         _missing(evaluations, conditions)
     findings = _one(curve, condition)
     findings.notices += _missing(evaluations, conditions)
@@ -92,11 +92,20 @@ def found(
     return findings, evaluations
 
 
-def _look(curve: Curve) -> bool:
-    """Ask across the range, and more closely if no answer has the figure; return whether one has."""
+def _look(curve: Curve, figure: Figure) -> bool:
+    """Ask across the range, and more closely if no answer has the figure; return whether one has.
+
+    A name that the first answer does not know is none of the others', which are asked the same: nothing more is asked.
+    """
+    answered = False
     for shares in (first_shares(FEW), first_shares(FIRST)):
-        values = [curve.value(curve.varied.at_share(share)) for share in shares]
-        if any(value is not None for value in values):
+        for share in shares:
+            x = curve.varied.at_share(share)
+            answered = curve.value(x) is not None or answered
+            sample = curve.sample(x)
+            if not answered and sample.refused is None and names_nothing(curve.answer(x), figure.path):
+                return False
+        if answered:
             return True
     return False
 

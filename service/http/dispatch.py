@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -31,7 +32,7 @@ from service.observability.failed_checks import FailedChecks
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
-from service.problems import REGISTRY, Problem, Refusal, problem_of
+from service.problems import OVERDUE, REGISTRY, Problem, Refusal, problem_of
 from service.requests.suggestions import nearest_path
 from service.responses import npz as archive
 from service.responses.json_stream import Document
@@ -161,6 +162,8 @@ class Dispatcher:
             except (Refusal, MechanicsError) as error:
                 problem = error.problem if isinstance(error, Refusal) else problem_of(error)
                 self._failed.record(context.id, route.operation_id, body, problem)
+                if problem.type.code == OVERDUE:
+                    raise Refusal.of(_with_remedy(problem, route.path in self._later)) from None
                 raise
             if media == archive.MEDIA_TYPE:
                 await self._stream(document, _etag_of_answer(route, body, media), context, _NPZ)
@@ -257,6 +260,16 @@ def _in_form(handler: ASGIApp, media: str) -> ASGIApp:
         await handler({**scope, "headers": [*others, (b"accept", media.encode())]}, receive, send)
 
     return serve
+
+
+def _with_remedy(problem: Problem, later: bool) -> Problem:
+    """Return the problem of a computation that took too long, with what helps; `later` if it may take place later."""
+    remedy = (
+        "with the header Prefer: respond-async it is answered in the background, as a study"
+        if later
+        else "requests to this path are not answered in the background: ask for less"
+    )
+    return replace(problem, detail=f"{problem.detail}; {remedy}")
 
 
 def _preferred(headers: Mapping[bytes, bytes]) -> bool:

@@ -43,6 +43,11 @@ def has_field(model: Any, *path: str | int) -> bool:
     return bool(nodes)
 
 
+def fields_of(model: Any) -> list[str]:
+    """Return the names of the fields of a question or an answer."""
+    return [name for hint, _ in _bare(model, None) for name in _fields(_origin(hint) or hint)]
+
+
 def numbers_within(model: Any, document: Any) -> Iterator[tuple[str, float]]:
     """Yield unit and magnitude of the numbers of a document that its model declares units for."""
     yield from _numbers([*_bare(model, None)], document)

@@ -20,7 +20,7 @@ from typing import Any
 
 from service.execution.worker import Terms
 from service.observability.logs import LOG
-from service.problems import Refusal
+from service.problems import OVERDUE, Refusal
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
 from service.studies.cluster import TRIED_AGAIN, Cluster
 from service.studies.one_answer import compute_answer
@@ -47,8 +47,6 @@ GATHERING = 60.0
 
 ENDING = 10.0
 """Seconds in which a process that is ended must have gone."""
-
-OVERDUE = "deadline-exceeded"
 
 PAUSE = 2.0
 """Seconds after which something is tried again that failed for reasons outside of the study."""

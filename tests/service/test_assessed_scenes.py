@@ -214,3 +214,33 @@ def test_a_found_input_is_claimed_in_the_unit_in_which_it_is_written() -> None:
     assert verdict_of(question, pointer, 3.6 * speed, "km/h") == "correct"
     assert verdict_of(question, pointer, speed, "m") == "wrong-unit"
     assert verdict_of(question, "/solutions/0/figure", 25, "cm") == "correct"
+
+
+@pytest.mark.parametrize(
+    ("locale", "text", "verdict"),
+    [
+        ("de", "stabil", "correct"),
+        ("de", "labil", "incorrect"),
+        ("en", "Stable", "correct"),
+        ("en", "unstable", "incorrect"),
+        ("fr", "instable", "incorrect"),
+        ("es", "estable", "correct"),
+        ("es", "inestable", "incorrect"),
+    ],
+)
+def test_an_equilibrium_is_stable_in_every_language(locale: str, text: str, verdict: str) -> None:
+    """A pendulum hangs in the first of its equilibria."""
+    request = {key: SEARCHED[key] for key in ("gravity", "bodies", "connections")} | {"outputs": ["equilibria"]}
+    hanging = {"path": "/v1/scenes", "request": request}
+    places = [one["positions"]["bob"][1] for one in answer_to(hanging)["equilibria"]]
+    claim = {f"/equilibria/{places.index(min(places))}/stable": {"text": text}}
+    (result,) = handled(hanging, claim, locale=locale)["results"]
+    assert result["tests"][0]["verdict"] == verdict
+
+
+def test_words_for_a_number_are_answered_without_names_of_the_problem() -> None:
+    question = {"path": "/v1/scenes", "request": SEARCHED}
+    (result,) = handled(question, {"/extremes/0/largest": {"text": "keine Ahnung"}}, locale="de")["results"]
+    (fault,) = result["format_errors"]
+    assert "remedy" not in fault
+    assert "bob" not in result["feedback"]

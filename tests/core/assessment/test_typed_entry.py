@@ -91,6 +91,8 @@ def test_values_with_units(text: str, value: Any, unit: str | None) -> None:
         ("M*g\u00b7sin(alpha)/3", "M*g*sin(alpha)/3", None),
         ("2,5*m*g", "2.5*m*g", None),
         ("sqrt(2) m/s", "sqrt(2)", "m/s"),
+        ("tan(25\u00b0)", "tan(25*pi/180)", None),
+        ("2*sin 7,5\u00b0 N", "2*sin(7.5*pi/180)", "N"),
         ("2\u221a3 m", "2*sqrt(3)", "m"),
         ("0,5 \u03c0/3", "0.5*pi/3", None),
         ("2 sin(a) m", "2*sin(a)", "m"),

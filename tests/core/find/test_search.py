@@ -10,7 +10,7 @@ import pytest
 
 from core.errors import InvalidParameter, MechanicsError
 from core.find.varied import Varied, can_vary
-from core.sensitivities.figure import Count
+from core.sensitivities.figure import Count, Figure
 from tests.core.find.toy_question import Function, search
 
 PLACE = sqrt(2.0)
@@ -274,6 +274,16 @@ def test_figures_that_do_not_fit_are_refused() -> None:
         search(lambda x: "word", (0.0, 3.0), "least")
     with pytest.raises(InvalidParameter, match="lead to a number, a word or a truth value"):
         search(lambda x: [1.0, x], (0.0, 3.0), "equals", 1.0)
+    asked: list[float] = []
+
+    def places(x: float) -> dict[str, float]:
+        asked.append(x)
+        return {"bob": x}
+
+    with pytest.raises(InvalidParameter, match="lead to a number, a word or a truth value"):
+        search(places, (0.0, 3.0), "equals", 1.0, figure=Figure(("f0", "bobb")))
+    # A wrong name is one in every answer.
+    assert len({*asked}) == 1
     with pytest.raises(InvalidParameter, match="which number"):
         search([lambda x, y: x, lambda x, y: y], [(0.0, 3.0)] * 2, "least")
 

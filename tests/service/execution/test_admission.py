@@ -106,6 +106,7 @@ async def test_a_computation_past_its_deadline_is_stopped() -> None:
         await until(lambda: running.warm)
         response = await client.post("/v1/toy", json=sleeping(3.0))
         assert (response.status_code, response.json()["code"]) == (503, "deadline-exceeded")
+        assert "not answered in the background: ask for less" in response.json()["detail"]
 
 
 async def test_what_uses_its_slice_is_answered_from_less_and_becomes_no_long_question(
