@@ -27,6 +27,7 @@ from tests.service.random_questions import questions_of
 SERVICE = inline_service()
 ROUTES = {route.path: route for route in questions()}
 UNPLANNED = ("/v1/plan", "/v1/assessments", "/v1/variants", "/v1/studies", "/v1/find")
+DOCUMENTS = ("/v1/scenes/import", "/v1/scenes/export")
 # Plans are made of any other question; these cost their question. Studies have a test of their own.
 PLANNED = [(route, name) for route in ROUTES.values() if route.path not in UNPLANNED for name in route.examples]
 PATH = "/v1/rotation/trajectory"
@@ -237,8 +238,8 @@ def answered(path: str, request: Any) -> tuple[Any, bytes]:
 
 
 def test_random_questions_are_drawn_for_every_endpoint() -> None:
-    # Fits take longer than the slice of a plan; their examples are planned.
-    assert {*DRAWN, *UNPLANNED, "/v1/fits"} == set(ROUTES)
+    # Fits take longer than the slice of a plan; their examples are planned, as are those of documents.
+    assert {*DRAWN, *UNPLANNED, *DOCUMENTS, "/v1/fits"} == set(ROUTES)
 
 
 @pytest.mark.parametrize("path", DRAWN)

@@ -39,7 +39,7 @@ def with_places(measures: Measures, name: str, side: Side, n: Sequence[Poly], pa
         return side
     level = [dot(n, list(map(coordinate, axis))) for axis in axes[:2]]
     square = sum((raised(evaluated(x, measures.table.q), 2) for x in level), ZERO)
-    if not square < LEVEL**2:
+    if not square < LEVEL * LEVEL:
         return side
     assert side.body is not None
     c, s = _diameter(measures, side.body, axes)
@@ -74,7 +74,7 @@ def _diameter(measures: Measures, body: str, axes: Sequence[Sequence[int]]) -> t
         moves = measures.numerals.vector(written.velocity, ("bodies", body, "velocity"), 3)
         x, y = (sum((v * q[i] for v, i in zip(moves, axis, strict=True)), ZERO) for axis in axes[:2])
         # Of what falls, a direction along the plane that is rounding is none.
-        if x * x + y * y > LEVEL**2 * sum((v * v for v in moves), ZERO):
+        if x * x + y * y > LEVEL * LEVEL * sum((v * v for v in moves), ZERO):
             return _unit(x, y)
     return ONE, ZERO
 

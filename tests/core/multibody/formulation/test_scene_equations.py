@@ -12,6 +12,7 @@ import pytest
 
 from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.answer import SceneSolution
+from core.multibody.formulation.notation.plain import plain
 from core.multibody.formulation.scene_equations import MOST_COORDINATES
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.reading import scene_from
@@ -328,7 +329,7 @@ def test_angles_of_bodies_are_those_of_their_columns_with_their_turns(
     known |= {name: Jet(mpmath.mpf(one.value)) for name, one in answer.equations.start.items()}
     columns = {name: answer.trajectory.columns[f"{name}.angle"].values[0] for name in bodies}
     for name, column in columns.items():
-        assert abs(evaluated(answer.equations.places[f"{name}.angle"], known).value - column) < 1e-13
+        assert abs(evaluated(plain(answer.equations.places[f"{name}.angle"]), known).value - column) < 1e-13
     for name, formula in answer.equations.coordinates.items():
         assert formula in {f"{one}.angle" for one in columns}
         assert abs(answer.equations.start[name].value - columns[formula.removesuffix(".angle")]) < 1e-13
