@@ -15,6 +15,9 @@ Scale = Literal["linear", "log"]
 LARGEST = 1.7e308
 """Largest width of a range, so that no difference within it overflows, and largest size of what a figure equals."""
 
+FEWEST = 1000
+"""Roundings that a range is wide at least, so that samples are different doubles: a search takes up to 600."""
+
 
 def can_vary(present: object, names: Collection[str]) -> bool:
     """Return whether what stands in a request is a number, or a formula over names."""
@@ -54,6 +57,9 @@ class Varied:
             swapped = self.most < self.least
             remedy = "write the smaller one first" if swapped else "a single value is the question itself"
             raise InvalidParameter(("between", 1), "be greater than the first", remedy=remedy)
+        if self.most - self.least < FEWEST * ulp(max(abs(self.least), abs(self.most))):
+            rule = f"be greater than the first by at least {FEWEST} roundings of doubles"
+            raise InvalidParameter(("between", 1), rule, remedy="a range so narrow is a single value: ask the question")
         if self.scale == "log" and self.least <= 0.0:
             rule = "be greater than 0 on a log scale"
             raise InvalidParameter(("between", 0), rule, remedy='take the scale "linear"')

@@ -79,6 +79,7 @@ FAULTS: list[tuple[Any, Any, str, str, str]] = [
     ),
     (SPIN | {"pointer": "/body/kind"}, EIGHT, "/vary/pointer", "number in the request", ""),
     (SPIN | {"between": [8, 1]}, EIGHT, "/vary/between/1", "greater than the first", "smaller one first"),
+    (SPIN | {"between": [1, 1.0000000000000002]}, EIGHT, "/vary/between/1", "roundings of doubles", "ask the question"),
     (SPIN | {"between": [1, "x"]}, EIGHT, "/vary/between/1", "number", ""),
     (SPIN | {"between": [1, {"value": 1, "unit": "kg"}]}, EIGHT, "/vary/between/1/unit", "same kind", "rad s^-1"),
     (SPIN | {"scale": "log", "between": [-1, 1]}, EIGHT, "/vary/between/0", "greater than 0", "linear"),
