@@ -1,4 +1,4 @@
-"""Which places of a reduced table can be: those with positive lengths and taut strings, as doubles tell."""
+"""Which places of a table can be: those with bodies that are not mirrored, positive lengths and taut strings."""
 
 from __future__ import annotations
 
@@ -60,6 +60,7 @@ class RestingPlaces:
 
     def __init__(self, found: Described, entered: Table, small: Reduced) -> None:
         self.expressions, measures = small.expressions, found.measures
+        self._axes = [frame.axes for frame in measures.coordinates.frames.values() if frame.axes is not None]
         self._holds = Holds(
             entered,
             [(r, j, _terms(p)) for r, row in enumerate(entered.rows) for j, p in row.rates.items()],
@@ -75,8 +76,13 @@ class RestingPlaces:
         )
 
     def possible(self, found: ExactPlace) -> bool:
-        """Return whether lengths are positive there and strings taut."""
+        """Return whether lengths are positive there, strings taut, and the axes of bodies right-handed.
+
+        What holds three axes at right angles holds those of the mirror image as well.
+        """
         place, holds = [float(evaluated(expression, found.q)) for expression in self.expressions], self._holds
+        if not all(np.linalg.det([[place[i] for i in axis] for axis in axes]) > 0.0 for axes in self._axes):
+            return False
         if not all(_value(length, place) > 0.0 for length in holds.lengths):
             return False
         if not holds.forces:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from itertools import pairwise
 from typing import Any
@@ -302,3 +303,26 @@ def test_a_rod_hangs_and_stands_at_whichever_of_its_places_it_is_pinned(
         assert one.positions["rod"] == pytest.approx((x, -up), abs=1e-12)
         assert one.errors.angles["rod"] < 1e-14
         assert abs(arm * mpmath.expj(one.angles["rod"]) - up * 1j) < 1e-14
+
+
+@pytest.mark.parametrize("x", [0, 1000])
+@pytest.mark.parametrize("place", [(0, 0, 0.5), (0, 0.3, 0.4)])
+@pytest.mark.parametrize("pendulums", [1, 2])
+def test_bodies_of_space_rest_without_their_mirror_images(
+    pendulums: int, place: tuple[float, float, float], x: int
+) -> None:
+    """A pendulum about a level axis hangs or stands: two places, and four of two pendulums, each on its own axis."""
+    bodies, pins = {}, []
+    for i in range(pendulums):
+        # As it hangs, turned about its axis by the angle of which sine and cosine are 0.6 and 0.8.
+        _, y, z = place
+        at = [x + i, -(0.8 * y + 0.6 * z), -(-0.6 * y + 0.8 * z)]
+        axes = [[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]]
+        bodies[f"b{i}"] = {"mass": 1, "moments": [0.1, 0.12, 0.05], "at": at, "axes": axes, "places": {"top": place}}
+        pins.append({"kind": "pin", "a": f"b{i}.top", "b": [x + i, 0, 0], "axis": [1, 0, 0]})
+    scene = {"gravity": [0, 0, -9.81], "bodies": bodies, "connections": pins}
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    heights = sorted(tuple(one.positions[name][2] for name in bodies) for one in found)
+    expected = sorted(itertools.product((-0.5, 0.5), repeat=pendulums))
+    assert np.array(heights) == pytest.approx(np.array(expected), abs=1e-12)
