@@ -28,9 +28,10 @@ def main(channel: socket.socket, folder: str) -> None:
             word, _, rest = requests.read(int.from_bytes(header, "little")).partition(b" ")
             if word == b"vanish" and used_up(place / "vanish"):
                 os._exit(4)
+            # A request whose process dies before it has said so goes to another.
+            channel.sendall(BEGUN)
             with (place / "begun").open("ab") as notes:
                 notes.write(rest[:20] + b"\n")
-            channel.sendall(BEGUN)
             behave(word, rest, channel, place)
             channel.sendall(framed(rest))
             if word == b"last":
