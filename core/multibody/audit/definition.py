@@ -191,6 +191,16 @@ class Definition:
         """
         return 0.0
 
+    def coefficient_size(self, size: float) -> float:
+        """Return how large the terms are whose difference its coefficients of friction are, 1 where these are given.
+
+        Parameters
+        ----------
+        size : float
+            Size of the places of its bodies (m).
+        """
+        return 1.0
+
     @property
     def driven(self) -> float:
         """Speed or rate that it prescribes (m/s, rad/s)."""

@@ -238,8 +238,8 @@ class _Connection:
 
         within, full = partial(below, touch.static), partial(below, touch.kinetic)
         value = within(self.samples)
-        law = f"cone of friction of {force}"
-        self._hold(law, within, self.scale, value, forces=every, rows=given, one_sided=True)
+        law, scale = f"cone of friction of {force}", self.scale * self.connection.coefficient_size(self.size)
+        self._hold(law, within, scale, value, forces=every, rows=given, one_sided=True)
         if state is None:
             return
 
@@ -259,7 +259,7 @@ class _Connection:
         sliding = given & ((state == "slide") | (state == "slide back"))
         if not sliding.any():
             return
-        self._hold(f"sliding friction of {force}", full, self.scale, full(self.samples), forces=every, rows=sliding)
+        self._hold(f"sliding friction of {force}", full, scale, full(self.samples), forces=every, rows=sliding)
         if not self.known:
             return
         law, value = f"friction of {force} against the slip", against(self.samples)

@@ -62,7 +62,8 @@ def string(connection: String, reader: Reader, name: str, path: Path) -> Definit
     rough = touch_of(reader, name, path, connection.restitution, connection.friction)
     shares = [2.0 * np.tanh(mu * wrap / 2.0) for mu in (rough.static, rough.kinetic)]
     touch = replace(touch, static=shares[0], kinetic=shares[1], friction=(f"{name}.friction",))
-    return RubbingString(name, bodies, (run,), touch, drum)
+    shortest = min(float(part.direction(reader.start)[0]) for part in run.parts)
+    return RubbingString(name, bodies, (run,), touch, drum, shortest)
 
 
 @definition_of.register

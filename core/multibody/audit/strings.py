@@ -64,9 +64,16 @@ class RubbingString(StringDefinition):
     ----------
     drum : str or None
         On which it rubs.
+    shortest : float
+        Of its parts at the start (m), whose directions make its wrap.
     """
 
-    drum: str | None = None
+    drum: str | None
+    shortest: float
+
+    def coefficient_size(self, size: float) -> float:
+        """See `Definition.coefficient_size`: directions are known as well as differences of places."""
+        return max(1.0, size / self.shortest)
 
     def works(self) -> bool:
         """See `Definition.works`."""

@@ -6,6 +6,7 @@ more than its stated errors is no fault; so a spoiled answer counts where it dif
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -246,3 +247,19 @@ def test_a_top_on_a_rough_floor_is_answered_with_its_attitude_and_without(
     found = solve_scene(read(scene), np.array([0.1]), ("trajectory", "forces-in-time")).trajectory
     assert found is not None
     assert found.columns["rod.position"].values[0, 0] == pytest.approx(x, abs=1e-12)
+
+
+@pytest.mark.parametrize("x", [0, 10**6, -(10**7)])
+def test_a_band_brake_is_answered_wherever_it_stands(x: int) -> None:
+    """Its wrap is that of directions, which are known as well as differences of places are; both parts are upright."""
+    scene = catalogue()["band-brake"]
+    scene = copy.deepcopy({key: scene[key] for key in ("gravity", "bodies", "connections")})
+    for body in scene["bodies"].values():
+        body["at"][0] = f"({body['at'][0]}) + ({x})"
+    pin, band = scene["connections"]
+    pin["b"][0] = x
+    band["through"][0][0] = f"({band['through'][0][0]}) + ({x})"
+    found = solve_scene(read(scene), np.array([0.1]), ("trajectory", "forces-in-time"))
+    assert found.trajectory is not None
+    pull = found.trajectory.columns["band.1.tension"].values[0]
+    assert pull == pytest.approx(2 * 9.81 * np.exp(0.3 * np.pi), rel=1e-12)
