@@ -51,7 +51,7 @@ OUTER = ("assessment", "find", "fits", "sensitivities", "studies", "work_precisi
 
 SERVICE_LAYERS = (
     {"__init__"},
-    {"settings", "problems", "routing", "observability", "responses"},
+    {"settings", "problems", "problem_types", "routing", "observability", "responses"},
     {"schemas", "requests"},
     {"execution", "http"},
     {"routes", "openapi"},

@@ -9,7 +9,7 @@ from typing import Any
 
 from core.multibody.undecided import UNDECIDED
 from docs.site.navigation import DOCS, GENERATED
-from service.problems import REGISTRY
+from service.problem_types import REGISTRY
 from service.routing import ENDINGS
 from service.settings import Settings
 

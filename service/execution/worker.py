@@ -23,7 +23,8 @@ from core.errors import MechanicsError
 from core.systems.budget import Budget
 from service.execution.messages import BEGUN, LENGTH, apart, decoded, encoded
 from service.execution.request_handler import RequestHandler
-from service.problems import REGISTRY, Problem, Refusal, problem_of
+from service.problem_types import REGISTRY
+from service.problems import Problem, Refusal, problem_of
 from service.requests.request_reader import Limits
 from service.responses.json_stream import Document, composed
 from service.routing import PostRoute

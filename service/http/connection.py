@@ -13,7 +13,8 @@ from uvicorn.protocols.http.zttp_impl import ZttpProtocol
 
 from service.http import one_write
 from service.http.one_write import OneWrite
-from service.problems import MEDIA_TYPE, REGISTRY, Problem
+from service.problem_types import REGISTRY
+from service.problems import MEDIA_TYPE, Problem
 
 _REFUSAL = Problem(
     REGISTRY["malformed-request"], "the head of the request or the framing of its body cannot be read, or is too long"

@@ -32,7 +32,8 @@ from service.observability.failed_checks import FailedChecks
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
-from service.problems import OVERDUE, REGISTRY, Problem, Refusal, problem_of
+from service.problem_types import OVERDUE, REGISTRY
+from service.problems import Problem, Refusal, problem_of
 from service.requests.suggestions import nearest_path
 from service.responses import npz as archive
 from service.responses.json_stream import Document

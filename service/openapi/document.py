@@ -19,7 +19,8 @@ from service import VERSION
 from service.http.deprecation import DEPRECATED
 from service.openapi import components
 from service.openapi.descriptions import describe
-from service.problems import MEDIA_TYPE, REGISTRY
+from service.problem_types import REGISTRY
+from service.problems import MEDIA_TYPE
 from service.responses.svg import SVG
 from service.routing import PostRoute, ResourceRoute, Route, StudyRoute
 from service.schemas import ProblemDocument

@@ -17,7 +17,7 @@ from core.quantities import members_of
 from core.systems.accuracy import record
 from core.systems.methods import Method
 from core.systems.methods.method import AbstractMethod, Family, Invariance
-from service.problems import registry
+from service.problem_types import registry
 from service.routes.described_answer import UNDECIDED_PATH
 from service.routes.described_scenes import described_examples
 from service.routes.scenes import SceneCatalogue, members, scene_entries

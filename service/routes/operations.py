@@ -7,7 +7,8 @@ from collections.abc import Callable
 from pydantic import Field
 
 from service.observability.metrics import CONTENT_TYPE, Metrics
-from service.problems import MEDIA_TYPE, REGISTRY, Problem
+from service.problem_types import REGISTRY
+from service.problems import MEDIA_TYPE, Problem
 from service.routing import GetRoute, Reply
 from service.schemas import View
 

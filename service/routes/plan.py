@@ -18,7 +18,8 @@ from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.methods.fixed_step import FixedStep
 from service.execution.request_handler import signed
-from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
+from service.problem_types import REGISTRY
+from service.problems import MOST_FAULTS, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_stream import composed

@@ -20,7 +20,8 @@ from typing import Any
 
 from service.execution.worker import Terms
 from service.observability.logs import LOG
-from service.problems import OVERDUE, Refusal
+from service.problem_types import OVERDUE
+from service.problems import Refusal
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
 from service.studies.cluster import TRIED_AGAIN, Cluster
 from service.studies.one_answer import compute_answer

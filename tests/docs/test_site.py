@@ -18,7 +18,7 @@ from docs.site.links import linked_files, moved
 from docs.site.navigation import DOCS, GENERATED, ROOT, navigation, pages
 from docs.site.reference import reference
 from docs.site.thumbnails import answer_of, thumbnail
-from service.problems import REGISTRY
+from service.problem_types import REGISTRY
 from service.settings import Settings
 
 NUMBER = re.compile(r"-?\d+\.\d+")

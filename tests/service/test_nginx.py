@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from service.problems import REGISTRY
+from service.problem_types import REGISTRY
 from tests.service import hostile
 from tests.service.conftest import PATIENCE, ROOT, Server
 

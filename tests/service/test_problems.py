@@ -2,18 +2,8 @@ import orjson
 import pytest
 
 from core import errors
-from service.problems import (
-    MECHANICS,
-    MOST_BYTES,
-    MOST_FAULTS,
-    REGISTRY,
-    Fault,
-    Problem,
-    code_of,
-    pointer_of,
-    problem_of,
-    registry,
-)
+from service.problem_types import REGISTRY, registry
+from service.problems import MECHANICS, MOST_BYTES, MOST_FAULTS, Fault, Problem, code_of, pointer_of, problem_of
 from tests.service.toy_routes import Unlisted
 
 

@@ -18,7 +18,8 @@ from service.http.limits import ClientGone
 from service.http.request_context import SHORT, VARY, RequestContext, network_of
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
-from service.problems import REGISTRY, Problem
+from service.problem_types import REGISTRY
+from service.problems import Problem
 
 pytestmark = pytest.mark.anyio
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from service.observability.metrics import Metrics
-from service.problems import REGISTRY
+from service.problem_types import REGISTRY
 from tests.service.conftest import ROOT
 
 FOLDER = ROOT / "docs" / "observability"

@@ -10,7 +10,8 @@ import pytest
 
 from service.observability.failed_checks import FailedChecks
 from service.observability.metrics import Metrics
-from service.problems import REGISTRY, Problem
+from service.problem_types import REGISTRY
+from service.problems import Problem
 from service.routes.operations import operations
 from tests.service.conftest import client_of, inline_toys
 from tests.service.toy_routes import GOOD

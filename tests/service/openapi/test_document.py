@@ -13,7 +13,8 @@ from fastapi import FastAPI
 
 from service import VERSION
 from service.openapi.document import ABOUT, openapi, serve_routes
-from service.problems import MEDIA_TYPE, REGISTRY
+from service.problem_types import REGISTRY
+from service.problems import MEDIA_TYPE
 from service.routing import GetRoute, Reply, Route
 from tests.service.conftest import client_of
 from tests.service.toy_routes import GOOD, TOY, Told
