@@ -74,7 +74,7 @@ def _never_vanishes(row: Row, own: Sequence[int], count: int, heavy: Set[int]) -
         places[i] = combined((value, constant(ONE)), (-ONE, {(k,): x for k, x in line.items()}))
     rest = substituted(row.measure, places)
     keys = {key for key, x in rest.items() if not is_zero(x)}
-    return keys == {()} or (not keys and not row.rates.keys() <= heavy)
+    return keys == {()} or (not keys and any((j, j) in row.measure for j in own if j not in heavy))
 
 
 @kernel()

@@ -21,7 +21,7 @@ from core.multibody.laws.samples import values_of
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.series_pairs import multipliers_pairs
 from core.multibody.reduction.reduction import Reduced
-from core.multibody.table.connection_effects import Force
+from core.multibody.table.connection_effects import Force, Limit
 from core.multibody.table.measures import Measures
 from core.multibody.table.table import Table
 
@@ -52,6 +52,11 @@ class Whole:
     _packed: dict[tuple[int, ...], tuple[Packed, Units, list[int]]] = field(
         default_factory=dict, init=False, repr=False
     )
+
+    @property
+    def limits(self) -> Sequence[Limit]:
+        """What has to stay positive: by the connections, and on the branches that the passes chose."""
+        return [*self.measures.limits, *self.reduced.branches]
 
     @cached_property
     def affine(self) -> tuple[Floats, Floats]:

@@ -54,7 +54,7 @@ def follow_backwards(motion: PhaseMotion, times: Floats) -> None:
         watched = [
             *watches(phase.unilateral, phase.states, phase.tables[0], phase.openings),
             *switches(phase.arguments, phase.tables[0].table),
-            *lengths(motion.base.measures.limits),
+            *lengths(phase.models[0].whole.limits),
         ]
         with precision(BITS):
             ends = [_end(phase, watch) for watch in watched]

@@ -93,7 +93,7 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
     watched = [
         *watches(phase.unilateral, phase.states, phase.tables[0], phase.openings, of_forces=not in_closed_form),
         *switches(phase.arguments, phase.tables[0].table),
-        *lengths(base.measures.limits),
+        *lengths(phase.models[0].whole.limits),
     ]
     found = _crossings(base, phase, watched, left, noticed)
     gone = next((watch.one.name for watch in watched if watch.what == "length" and _is_gone(phase, watch, found)), None)

@@ -78,13 +78,13 @@ def ends_within(motion: PhaseMotion, time: float, searched: float) -> bool:
 
 def not_watched(phase: Phase) -> list[str]:
     """Return the connections that might end a phase by forces that the scene does not determine."""
-    limits = phase.models[0].whole.measures.limits
+    limits = phase.models[0].whole.limits
     return list(dict.fromkeys(limit.name for limit in limits if not _is_watched(phase, limit)))
 
 
 def _watched(phase: Phase) -> Sequence[End]:
     whole = phase.models[0].whole
-    limits = [limit for limit in whole.measures.limits if _is_watched(phase, limit)]
+    limits = [limit for limit in whole.limits if _is_watched(phase, limit)]
     pulling = [limit.force for limit in limits if limit.force is not None and phase.pulls(limit.force)]
     if whole.uniform and pulling:
         # What pulls at the start and does not change pulls for ever.

@@ -103,7 +103,7 @@ class PartProof:
     def watched(self) -> list[End]:
         """What may end the motion."""
         whole = self.found.whole
-        limits = whole.measures.limits
+        limits = whole.limits
         return [
             end_of(whole, limit)
             for limit in limits

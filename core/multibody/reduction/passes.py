@@ -1,8 +1,8 @@
 """Passes that make a table smaller without changing its motion, to a fixed point, each saying what it found.
 
 *Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
-leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a difference of two squares is
-the factor that vanishes. *Twins*: functions of time that are the same are one. *Pin*: coordinates at rest whose
+leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a product is the
+factor that vanishes, as long as the other one does not. *Twins*: functions of time that are the same are one. *Pin*: coordinates at rest whose
 equations vanish wherever they stay are constants. *Separate*: what nothing ties to a place falls as its centre of mass
 does. The last two serve the motion from the given start only, never questions about its surroundings.
 """
@@ -19,6 +19,7 @@ from core.multibody.algebra.polynomials import (
     combined,
     constant,
     degree,
+    difference,
     entry,
     evaluated,
     gradient,
@@ -32,6 +33,7 @@ from core.multibody.equations.dynamics import parts
 from core.multibody.reduction.degenerate_rows import resolve
 from core.multibody.reduction.pinning import pin, separate
 from core.multibody.reduction.reduction import Reduced, substitute
+from core.multibody.table.connection_effects import Limit
 from core.multibody.table.table import Row, Table, identity
 
 _MOST_FACTORED = 8
@@ -145,8 +147,13 @@ def _factor(state: Reduced) -> bool:
         values = [evaluated(factor, state.table.q) for factor in factors]
         zero = [i for i in (0, 1) if is_zero(values[i])]
         if len(zero) == 1:
-            state.table.rows[number] = Row.held(row.name, factors[zero[0]])
+            held, other = factors[zero[0]], factors[1 - zero[0]]
+            state.table.rows[number] = Row.held(row.name, held)
             state.steps.append(f"{row.name}: a product of which one factor vanishes")
+            if variables([difference(other, held)]):
+                sign = ONE if values[1 - zero[0]] > 0 else -ONE
+                branch = state.in_original(combined((sign, other)))
+                state.branches.append(Limit("singular", row.name, length=branch))
             changed = True
     return changed
 
@@ -155,7 +162,7 @@ def _factors(measure: Poly) -> tuple[Poly, Poly] | None:
     """Return two affine factors of a quadratic, up to a constant, or None."""
     first = _completed(measure)
     if first is None:
-        return None
+        return _factors_without_squares(measure)
     base, rest = first
     # measure ~ base^2 + rest
     negative = combined((-ONE, rest))
@@ -172,6 +179,17 @@ def _factors(measure: Poly) -> tuple[Poly, Poly] | None:
             return None
         root = combined((negative[pivot].sqrt(), second[0]))
     return combined((ONE, base), (ONE, root)), combined((ONE, base), (-ONE, root))
+
+
+def _factors_without_squares(measure: Poly) -> tuple[Poly, Poly] | None:
+    """Return two affine factors of a quadratic in which no coordinate has a square, or None."""
+    i, j = next(key for key in measure if len(key) == 2)
+    lead = measure[i, j]
+    first, second = (
+        {tuple(k for k in key if k != left): value / lead for key, value in measure.items() if left in key}
+        for left in (j, i)
+    )
+    return None if combined((ONE, measure), (-lead, product(first, second))) else (first, second)
 
 
 def _completed(poly: Poly, index: int | None = None) -> tuple[Poly, Poly] | None:

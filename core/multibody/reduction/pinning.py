@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from core.multibody.algebra.polynomials import ZERO, Ball, Poly, constant, entry, is_zero
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, constant, entry, is_zero
 from core.multibody.equations.dynamics import undetermined, weightless
 from core.multibody.reduction.centre_of_mass import centred, free_shift
 from core.multibody.reduction.reduction import Reduced, recast, substitute
@@ -28,12 +28,13 @@ def pin(state: Reduced) -> bool:
             if part is table.mass and key[1] in coupled and key[0] != key[1]:
                 coupled[key[1]][key] = None
     while pinned:
+        letting_go = _letting_go(table, pinned)
         live = [
             row
-            for row in table.rows
+            for number, row in enumerate(table.rows)
             if row.drag
             or any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
-            or _lets_go(table, row, pinned)
+            or number in letting_go
         ]
         leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
         if not leave:
@@ -98,13 +99,27 @@ def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
     return is_zero(total)
 
 
-def _lets_go(table: Table, row: Row, pinned: set[int]) -> bool:
-    """Return whether a row keeps one coordinate at rest alone, and leaves it free where others vanish.
+def _letting_go(table: Table, pinned: set[int]) -> set[int]:
+    """Return the numbers of rows that keep one coordinate at rest alone, and leave it free where others vanish.
 
-    So does x y = 0 with x = 0 where y = 0: there the motion may go on along either.
+    So does x y + z^2 = 0 with x = z = 0 where y = 0: there the motion may go on along other places. What has no mass, as
+    the products of a formula, is taken from the rows before.
     """
-    holding = [poly for j, poly in row.rates.items() if j in pinned and not _vanishes(table, poly, pinned)]
-    return len(holding) == 1 and any(key and key[0] not in pinned for key in holding[0])
+    holding = {
+        number: {j: poly for j, poly in row.rates.items() if j in pinned and not _vanishes(table, poly, pinned)}
+        for number, row in enumerate(table.rows)
+    }
+    for j in pinned - {i for key in table.mass for i in key}:
+        plain = [number for number, line in holding.items() if set(line.get(j, ())) == {()}]
+        if plain:
+            first = holding.pop(min(plain, key=lambda number: len(holding[number])))
+            for number in plain:
+                if number in holding:
+                    line, share = holding[number], holding[number][j][()] / first[j][()]
+                    rest = {k: combined((ONE, line.get(k, {})), (-share, first.get(k, {}))) for k in line | first}
+                    holding[number] = {k: poly for k, poly in rest.items() if poly}
+    one = {number: next(iter(line.values())) for number, line in holding.items() if len(line) == 1}
+    return {number for number, poly in one.items() if any(key and key[0] not in pinned for key in poly)}
 
 
 def _stays(table: Table, i: int, pinned: set[int], coupled: Iterable[tuple[int, ...]], live: list[Row]) -> bool:

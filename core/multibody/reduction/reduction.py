@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, substituted
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, constant, entry, substituted
+from core.multibody.algebra.rank import Elimination
+from core.multibody.table.connection_effects import Limit
 from core.multibody.table.table import Table
 
 
@@ -25,6 +27,8 @@ class Reduced:
         What each pass did.
     twins : sequence of (int, int)
         Coordinates of the original table that are one function of time.
+    branches : list of Limit
+        Where the branch that a measure was replaced by meets another one of its places, in the original coordinates.
     """
 
     table: Table
@@ -33,10 +37,20 @@ class Reduced:
     pinned: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
     twins: Sequence[tuple[int, int]] = ()
+    branches: list[Limit] = field(default_factory=list)
 
     def directions(self, changes: Sequence[Ball]) -> list[Ball]:
         """Return rates or higher derivatives of every coordinate of the original table, from those of this one."""
         return [sum((x * changes[key[0]] for key, x in e.items() if key), ZERO) for e in self.expressions]
+
+    def in_original(self, poly: Poly) -> Poly:
+        """Return an affine polynomial of the coordinates of this table in terms of those of the original table."""
+        shares = Elimination()
+        for j in range(len(self.table.names)):
+            shares.add({i: e[j,] for i, e in enumerate(self.expressions) if (j,) in e}, entry(poly, (j,)))
+        found: Poly = {(i,): value for i, (_, value) in shares.pivots.items()}
+        apart = entry(poly, ()) - entry(substituted(found, self.expressions), ())
+        return combined((ONE, found), (apart, constant(ONE)))
 
 
 def substitute(state: Reduced, expressions: list[Poly | None]) -> None:

@@ -184,6 +184,56 @@ def test_a_motion_ends_where_branches_of_its_surface_cross(formula: str, space: 
 
 
 @pytest.mark.parametrize(
+    ("formula", "at", "velocity", "gravity", "end"),
+    [
+        # z = 0 beside x = 0 and y = 0, beside the cone x y + z^2 = 0, whose apex the second one passes by.
+        ("x*y*z", [1, 2, 0], [-1, 0, 0], 0, 1.0),
+        ("x*y*z + z*z*z", [1, 1, 0], [-1, 0, 0], 0, 1.0),
+        ("x*y + z*z", [0, 1, 0], [0, 0, 0], 2, 1.0),
+        ("y*(y - x*x)", [-1, 0], [1, 0], 0, 1.0),
+    ],
+)
+def test_a_motion_ends_where_its_surface_has_no_normal(
+    formula: str, at: list[int], velocity: list[int], gravity: int, end: float
+) -> None:
+    track = {"kind": "track", "place": "a", "on": {"surface": formula}}
+    body = {"mass": 1, "at": at, "velocity": velocity}
+    down = [0, -gravity, 0][: len(at)]
+    answer = solve_scene(scene_from({"bodies": {"a": body}, "gravity": down, "connections": [track]}), [0.0, 2.0])
+    assert answer.ended is not None
+    assert answer.ended.kind == "singular"
+    assert abs(answer.ended.time - end) <= answer.ended.error
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_motion_ends_where_its_plane_meets_others(seed: int) -> None:
+    # On the plane n x = d its acceleration is g - (g n) n / n^2, and it meets m x = e where a quadratic of time vanishes.
+    random = np.random.default_rng(seed)
+    dimension = 2 + seed % 2
+    at, *planes = random.integers(-4, 5, (4, dimension))
+    gravity = random.integers(-9, 10, dimension)
+    own, others = planes[0], [plane for plane in planes[1:] if np.linalg.matrix_rank([plane, planes[0]]) == 2]
+    axes = "xyz"[:dimension]
+
+    def plane(normal: Any, offset: int) -> str:
+        terms = " + ".join(f"({n})*{x}" for n, x in zip(normal, axes, strict=True))
+        return f"({terms} - ({offset}))"
+
+    offsets = [int(other @ at) + int(random.integers(1, 5)) for other in others]
+    formula = "*".join([plane(own, int(own @ at)), *map(plane, others, offsets)])
+    gain = gravity - (gravity @ own) / (own @ own) * own
+    times = [math.sqrt(way) for n, e in zip(others, offsets, strict=True) if (way := 2 * (e - n @ at) / (n @ gain)) > 0]
+    track = {"kind": "track", "place": "a", "on": {"surface": formula}}
+    bodies = {"a": {"mass": 1, "at": at.tolist()}}
+    scene = {"bodies": bodies, "gravity": gravity.tolist(), "connections": [track]}
+    answer = solve_scene(scene_from(scene), [0.0, 100.0])
+    assert times
+    assert answer.ended is not None
+    assert answer.ended.kind == "singular"
+    assert abs(answer.ended.time - min(times)) <= answer.ended.error + 1e-15 * min(times)
+
+
+@pytest.mark.parametrize(
     ("formula", "rule"), [("0*x", "change with x or y"), ("x-x", "change with x or y"), ("x*y", "singular place")]
 )
 def test_a_surface_without_a_gradient_at_the_start_is_refused(formula: str, rule: str) -> None:
