@@ -1,10 +1,10 @@
 """Passes that make a table smaller without changing its motion, to a fixed point, each saying what it found.
 
 *Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
-leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a product is the
-factor that vanishes, as long as the other one does not. *Twins*: functions of time that are the same are one. *Pin*: coordinates at rest whose
-equations vanish wherever they stay are constants. *Separate*: what nothing ties to a place falls as its centre of mass
-does. The last two serve the motion from the given start only, never questions about its surroundings.
+leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a product is the factor that
+vanishes, as long as the other one does not. *Twins*: functions of time that are the same are one. *Pin*: coordinates at
+rest whose equations vanish wherever they stay are constants. *Separate*: what nothing ties to a place falls as its
+centre of mass does. The last two serve the motion from the given start only, never questions about its surroundings.
 """
 
 from __future__ import annotations

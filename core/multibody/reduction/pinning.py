@@ -102,8 +102,8 @@ def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
 def _letting_go(table: Table, pinned: set[int]) -> set[int]:
     """Return the numbers of rows that keep one coordinate at rest alone, and leave it free where others vanish.
 
-    So does x y + z^2 = 0 with x = z = 0 where y = 0: there the motion may go on along other places. What has no mass, as
-    the products of a formula, is taken from the rows before.
+    So does x y + z^2 = 0 with x = z = 0 where y = 0: there the motion may go on along other places. What has no
+    mass, as the products of a formula, is taken from the rows before.
     """
     holding = {
         number: {j: poly for j, poly in row.rates.items() if j in pinned and not _vanishes(table, poly, pinned)}

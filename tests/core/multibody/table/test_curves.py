@@ -207,7 +207,7 @@ def test_a_motion_ends_where_its_surface_has_no_normal(
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_motion_ends_where_its_plane_meets_others(seed: int) -> None:
-    # On the plane n x = d its acceleration is g - (g n) n / n^2, and it meets m x = e where a quadratic of time vanishes.
+    # On the plane n x = d its acceleration is g - (g n) n / n^2; m x = e is where a quadratic of time vanishes.
     random = np.random.default_rng(seed)
     dimension = 2 + seed % 2
     at, *planes = random.integers(-4, 5, (4, dimension))
