@@ -103,7 +103,7 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
         for place in refined
         if not place.one_of_many
         for direction in soft_directions(exact, place)
-        for other in places_beside(exact, place, direction)
+        for other in places_beside(exact, equations.arrays, place, direction)
     )
     refined = _different(chain(list(refined), beside), exact, turns)
     answers = [

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, ctx
@@ -169,8 +168,8 @@ class RestEquations:
                         found[j][key[0]] = found[j][key[0]] - multiplier * value
         return found
 
-    def derivatives(self, x: Sequence[Ball]) -> Any:
-        """Return the matrix of derivatives."""
+    def derivatives(self, x: Sequence[Ball]) -> list[list[Ball]]:
+        """Return the matrix of derivatives, by rows."""
         n, m = self.count, len(self.rows)
         matrix = [row + [ZERO] * m for row in self.stiffness(x[n:])] + [[ZERO] * (n + m) for _ in range(m)]
         for r, line in enumerate(self.lines(x[:n])):
@@ -179,7 +178,7 @@ class RestEquations:
         for r, (row, _) in enumerate(self.rows):
             for j, poly in row.rates.items():
                 matrix[j][n + r] = matrix[j][n + r] - evaluated(poly, x[:n])
-        return arb_mat(matrix)
+        return matrix
 
     def place(self, q: Floats, multipliers: Floats) -> ExactPlace | None:
         """Return the place of rest beside one that doubles found, in units of the sizes; None where there is none."""
@@ -187,30 +186,25 @@ class RestEquations:
 
     def refined(self, x: Sequence[Ball]) -> ExactPlace | None:
         """Return the place of rest beside coordinates and multipliers, None where there is none."""
-        unknowns, equations = self._determined(x)
         every = range(len(x))
-        one_of_many = len(equations) < len(x)
-        # What doubles take to be left open may be determined all the same, by a slope of a thousand millionth.
-        found = self._near(x, every, every) if one_of_many else None
+        found, one_of_many = self._near(x, every, every), False
         if found is None:
-            found = self._near(x, unknowns, equations)
-        else:
-            one_of_many = False
-        if found is not None and one_of_many:
-            left = self.residuals(found)
-            if not all(is_zero(left[i]) for i in set(range(len(x))) - set(equations)):
-                found = None
+            unknowns, equations = self._determined(x)
+            one_of_many = len(equations) < len(x)
+            found = self._near(x, unknowns, equations) if one_of_many else None
+            if found is not None:
+                left = self.residuals(found)
+                if not all(is_zero(left[i]) for i in set(every) - set(equations)):
+                    found = None
         if found is None:
             found, one_of_many = self._slowly(x), False
         return None if found is None else ExactPlace(found[: self.count], found[self.count :], one_of_many)
 
     def _determined(self, x: Sequence[Ball]) -> tuple[list[int], list[int]]:
         """Return the unknowns that the equations determine there, as doubles tell, and as many equations that do."""
-        size = len(x)
-        scaled = self.derivatives(x) * arb_mat(
-            [[self.sizes[i] if i == j else ZERO for j in range(size)] for i in range(size)]
-        )
-        matrix = _equilibrated(np.array([float(value.mid()) for value in scaled.entries()]).reshape(size, size))
+        size, rows = len(x), self.derivatives(x)
+        scaled = [[float((y * unit).mid()) for y, unit in zip(row, self.sizes, strict=True)] for row in rows]
+        matrix = _equilibrated(np.array(scaled))
         left, values, right = np.linalg.svd(matrix)
         count = int(np.sum(values <= _OPEN * max(values[0], 1e-300)))
         if not count:
@@ -222,7 +216,7 @@ class RestEquations:
     def _step(self, x: Sequence[Ball], unknowns: Sequence[int], equations: Sequence[int]) -> list[Ball] | None:
         """Return Newton's step of the unknowns, None where the equations do not determine it."""
         spend(_UNITS_OF_A_NEWTON_STEP * len(unknowns) ** 3)
-        rows, left = self.derivatives(x).tolist(), self.residuals(x)
+        rows, left = self.derivatives(x), self.residuals(x)
         matrix = arb_mat([[rows[i][j].mid() for j in unknowns] for i in equations])
         try:
             solved = matrix.solve(arb_mat([[left[i].mid()] for i in equations])).mid().entries()
@@ -253,7 +247,7 @@ class RestEquations:
 
     def _enclosed(self, x: list[Ball], unknowns: Sequence[int], equations: Sequence[int]) -> list[Ball] | None:
         """Return a box in which one solution is proven to lie, None where that is not proven."""
-        rows = self.derivatives(x).tolist()
+        rows = self.derivatives(x)
         try:
             inverse = arb_mat([[rows[i][j].mid() for j in unknowns] for i in equations]).inv().mid()
         except ZeroDivisionError:
@@ -268,7 +262,7 @@ class RestEquations:
             box = list(x)
             for i, radius in zip(unknowns, wide, strict=True):
                 box[i] = arb(x[i], radius)
-            slopes = self.derivatives(box).tolist()
+            slopes = self.derivatives(box)
             product = (inverse * arb_mat([[slopes[i][j] for j in unknowns] for i in equations])).tolist()
             moved = [
                 abs(y) + sum((abs((1 if a == b else 0) - product[a][b]) * wide[b] for b in range(len(unknowns))), ZERO)

@@ -15,12 +15,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+import numpy as np
 from flint import arb, arb_mat
 
 from core.balls import precision
 from core.multibody.algebra.polynomials import ZERO, Ball
 from core.multibody.statics.exact_places import ExactPlace, RestEquations
+from core.multibody.statics.held_aside import force_keeps_sign
 from core.multibody.statics.small_motions import SoftDirection
+from core.multibody.statics.static_equations import StaticArrays
 from core.work import spend
 
 _BITS_BESIDE = 192
@@ -43,23 +46,38 @@ _UNITS_OF_A_DISTANCE = 0.02
 """Units of work (`core.work`) of a step, times the cube of the unknowns."""
 
 
-def places_beside(equations: RestEquations, place: ExactPlace, direction: SoftDirection) -> Iterator[ExactPlace]:
-    """Yield further places of rest along a soft direction."""
+def places_beside(
+    equations: RestEquations, arrays: StaticArrays, place: ExactPlace, direction: SoftDirection
+) -> Iterator[ExactPlace]:
+    """Yield further places of rest along a soft direction.
+
+    Parameters
+    ----------
+    arrays : StaticArrays
+        The equations in doubles, in units of the sizes.
+    """
     with precision(_BITS_BESIDE):
-        found = list(_starts(equations, place, direction))
+        found = list(_starts(equations, arrays, place, direction))
     for x in found:
         refined = equations.refined(x)
         if refined is not None:
             yield refined
 
 
-def _starts(equations: RestEquations, place: ExactPlace, direction: SoftDirection) -> Iterator[list[Ball]]:
+def _starts(
+    equations: RestEquations, arrays: StaticArrays, place: ExactPlace, direction: SoftDirection
+) -> Iterator[list[Ball]]:
     path = _Path(equations, place, direction.change)
     share = max(direction.share, 2.0**_LEAST)
     nearest = math.floor(2.0 * math.log2(share)) - _BEFORE
+    powers = range(nearest, _FARTHEST_POWER + 1)
+    start = np.array([float(x / size) for x, size in zip(path.start, equations.sizes, strict=True)])
+    along, distances = np.array([float(t) for t in path.along]), np.sqrt(np.exp2(powers))
     for way in (1, -1):
+        if force_keeps_sign(arrays, start, along, way * distances):
+            continue
         x, before, last = path.start, ZERO, ZERO
-        for k in range(nearest, _FARTHEST_POWER + 1):
+        for k in powers:
             distance = way * (arb(2) ** k).sqrt()
             held = path.held(x, distance)
             if held is None:
@@ -87,7 +105,7 @@ class _Path:
         x, force = list(x), ZERO
         for _ in range(_NEWTON_STEPS_OF_A_DISTANCE):
             spend(_UNITS_OF_A_DISTANCE * (size + 1) ** 3)
-            rows = equations.derivatives(x).tolist()
+            rows = equations.derivatives(x)
             left = equations.residuals(x)
             for i, t in enumerate(self.forces):
                 left[i] = left[i] - force * t
