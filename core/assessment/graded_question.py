@@ -159,9 +159,8 @@ class GradedQuestion:
         """
         numbers = dict(numbers_of(self.request, zeros=True))
         chosen = names if names is not None else names_of(numbers)
-        return {
-            name: (path, numbers[path], self._source.unit_of_request(path) or UNKNOWN) for name, path in chosen.items()
-        }
+        unit_of = self._source.units_of_request(self.request)
+        return {name: (path, numbers[path], unit_of(path) or UNKNOWN) for name, path in chosen.items()}
 
     def variations(self, path: Path, parameters: Parameters) -> list[Variation]:
         """Return the question's parameters and the figure at a path, and those of seeded variations of it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from core.errors import Path
@@ -35,8 +35,8 @@ class Source(Protocol):
     def unit_of_answer(self, path: Path) -> str | None:
         """Return the declared unit of a figure."""
 
-    def unit_of_request(self, path: Path) -> str | None:
-        """Return the declared unit of a number of the request."""
+    def units_of_request(self, request: Any) -> Callable[[Path], str | None]:
+        """Return a function from the path of a number of a request to the unit that it is written in, None if unknown."""
 
     def scales(self, answer: Mapping[str, Any], request: Any) -> Mapping[str, float]:
         """Return, by unit, the largest magnitude of an answer's numbers; of the request's where those are 0."""

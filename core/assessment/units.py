@@ -42,6 +42,7 @@ _POWER = re.compile(r"(?<=[\w)°%µμ])\s*(?:\^|\*\*)\s*(?:-?[1-9]|\(-?[1-9]\))(
 _NUMBER = re.compile(r"(?<![A-Za-z_])\d")
 _IN_FULL = re.compile(r"(?!Grad\b)[A-Z][a-z]{3,}")
 _MILLISECOND = re.compile(r"(?<![A-Za-z])ms(?![A-Za-z])")
+_METRE_PER_SECOND = re.compile(r"(?<![A-Za-z])ms(?=\s*(?:\^|\*\*)\s*\(?-)")
 _RECIPROCAL = re.compile(r"\s*1\s*/")
 _RAISED = re.compile(r"(?<=[^\W\d_])(-?[1-9])(?!\d)")
 _BETWEEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])|(?<=[^\W_])\.(?=[^\W\d_])")
@@ -169,6 +170,10 @@ def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     powers = dict(quantity.unit_items())
     angular = any(name.endswith(_ANGLES) for name in powers)
     if parsed.dimensionality != reference.dimensionality or (unit == "1" and angular):
+        apart = _METRE_PER_SECOND.sub("m*s", given)
+        if apart != given and isinstance(value := _factor(apart, unit), float):
+            # What is no power of a millisecond here is metres per second, as many write them: ms^-1.
+            return value
         if _MILLISECOND.search(given) and {"m", "s"} <= set(re.findall("[a-z]+", unit)):
             return MILLISECOND, f"{remedy}; ms is a millisecond, and metres times seconds are m s"
         return OTHER_KIND, remedy

@@ -110,8 +110,8 @@ class Inputs:
         return self._answered(path, number)
 
     def unit_of(self, path: Path) -> str | None:
-        """Return the declared unit of a number of the request."""
-        return self._source.unit_of_request(path)
+        """Return the unit that a number of the request is written in, None if it is not known."""
+        return self._source.units_of_request(self.request)(path)
 
     def _answer(self, path: Path, number: float) -> Mapping[str, Any]:
         spend(ANSWERING)

@@ -1,4 +1,4 @@
-"""An exam of 84 answers as students type them, in four locales, with the verdict of each decided by hand.
+"""An exam of 85 answers as students type them, in four locales, with the verdict of each decided by hand.
 
 The references are closed forms: the coin of moments 1, 1, 2 and angular velocity (1, 1, 1) has the body rate
 (2 - 1)/1 x 1 = 1 rad/s, the period 2 pi s and the angle atan(sqrt(2)/2) = 35.264 degrees to its angular momentum; a
@@ -98,6 +98,7 @@ EXAM: list[tuple[Locale, Any, str, Any, str]] = [
     ("en", CUBOID, MOMENTS, "[5/2, 5, 13/2] kg m^2", RIGHT),
     ("en", CUBOID, MOMENTS, "[2.5 5 7.5] kg m^2", WRONG),
     ("en", ATWOOD, TENSION, "m*(-minus_g) + -m*minus_g*(M - m)/(m + M)", RIGHT),
+    ("en", ATWOOD, "/accelerations/light/linear/1", "4.905 ms⁻²", RIGHT),
     # France
     ("fr", CUBOID, MOMENTS, "[2,5; 5; 6,5] kg·m²", RIGHT),
     ("fr", CUBOID, MOMENTS, "[5; 10; 13] kg·m²", WRONG),
@@ -141,7 +142,7 @@ def test_every_answer_has_the_verdict_of_the_examiner(
 
 
 def test_the_exam_has_answers_in_every_locale_right_and_wrong() -> None:
-    assert len(EXAM) == 84
+    assert len(EXAM) == 85
     assert {entry[0] for entry in EXAM} == set(get_args(Locale))
     assert 35 < sum(entry[-1] == RIGHT for entry in EXAM) < 65
 
@@ -158,6 +159,11 @@ def test_the_exam_has_answers_in_every_locale_right_and_wrong() -> None:
 def test_feedback_is_in_the_language_of_the_course(language: str, feedback: str) -> None:
     answer = handled(ATWOOD, {TENSION: {"value": 29.43, "unit": "N"}}, language=language)
     assert answer["results"][0]["feedback"] == feedback
+
+
+def test_a_wrong_dimension_of_a_formula_about_a_described_scene_is_named() -> None:
+    (result,) = handled(ATWOOD, {TENSION: {"formula": "2*m*M/(m + M)"}}, names=NAMES)["results"]
+    assert result["feedback"].startswith("Check the dimensions")
 
 
 def test_a_later_part_of_a_question_is_judged_from_the_earlier_one() -> None:

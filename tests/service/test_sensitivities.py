@@ -44,7 +44,7 @@ async def test_the_time_of_an_event_and_a_whole_column() -> None:
     answer = await sent("/v1/scenes", DROP | {"outputs": outputs})
     time, still, place, speed = answer["sensitivities"]
     # t = sqrt(2 h/g), y = h - g t^2/2.
-    assert (time["of"], time["to"], time["unit"]) == (touch, "/let/g", "s/(unit of /let/g)")
+    assert (time["of"], time["to"], time["unit"]) == (touch, "/let/g", "s/(m/s^2)")
     assert time["value"] == pytest.approx(-0.5 * 0.5 / 8.0, abs=time["error"])
     assert still["value"] == pytest.approx(0.0, abs=still["error"])
     assert np.array(place["value"]) == pytest.approx(np.array([[0.0, -1.0 / 32.0], [0.0, 0.0]]), abs=place["error"])

@@ -89,9 +89,10 @@ class RouteSource:
         """Return the declared unit of a figure."""
         return unit_at(self.route.answer, path)
 
-    def unit_of_request(self, path: Path) -> str | None:
-        """Return the declared unit of a number of the request."""
-        return unit_at(self.route.question, path)
+    def units_of_request(self, request: Any) -> Callable[[Path], str | None]:
+        """Return a function from the path of a number of a request to the unit that it is written in, None if unknown."""
+        question = self.read(json.dumps(request).encode())
+        return lambda path: question.unit_of(path)
 
     def scales(self, answer: Mapping[str, Any], request: Any) -> Mapping[str, float]:
         """Return, by unit, the largest magnitude of an answer's numbers; of the request's where those are 0."""

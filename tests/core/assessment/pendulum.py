@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import cos, pi, sqrt
 from typing import Any
 
@@ -64,7 +64,8 @@ class Pendulum:
     def unit_of_answer(self, path: Any) -> str | None:
         return UNITS.get(path[0])
 
-    unit_of_request = unit_of_answer
+    def units_of_request(self, request: Any) -> Callable[[Any], str | None]:
+        return self.unit_of_answer
 
     def scales(self, answer: Mapping[str, Any], request: Any) -> Mapping[str, float]:
         return {}

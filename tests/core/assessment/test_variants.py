@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import pi, sqrt
 from typing import Any
 
@@ -48,8 +48,8 @@ class Pendulum:
     def unit_of_answer(self, path: Path) -> str | None:
         return "s"
 
-    def unit_of_request(self, path: Path) -> str | None:
-        return "m"
+    def units_of_request(self, request: Any) -> Callable[[Path], str | None]:
+        return lambda path: "m"
 
     def scales(self, answer: Mapping[str, Any], request: Any) -> Mapping[str, float]:
         return {}

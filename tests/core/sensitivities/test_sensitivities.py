@@ -50,14 +50,14 @@ def test_a_bouncing_ball_against_its_closed_form() -> None:
     s = 1.25 - first
     by_h = first / (2.0 * h)
     cases: list[tuple[Any, str, float, str]] = [
-        (SECOND, "/let/h", (1.0 + 2.0 * e) * by_h, "s/(unit of /let/h)"),
-        (SECOND, "/let/g", -(1.0 + 2.0 * e) * first / (2.0 * g), "s/(unit of /let/g)"),
-        (SECOND, "/connections/0/restitution", 2.0 * first, "s/(unit of /connections/0/restitution)"),
+        (SECOND, "/let/h", (1.0 + 2.0 * e) * by_h, "s/m"),
+        (SECOND, "/let/g", -(1.0 + 2.0 * e) * first / (2.0 * g), "s/(m/s^2)"),
+        (SECOND, "/connections/0/restitution", 2.0 * first, "s"),
         (
             "/trajectory/columns/ball.position/values/1/1",
             "/let/h",
             e * g * by_h * s - e * g * first * by_h + g * s * by_h,
-            "m/(unit of /let/h)",
+            "m/m",
         ),
     ]
     asked = inputs(BALL)
