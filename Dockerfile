@@ -22,7 +22,7 @@ RUN mkdir compiled && environment/bin/python -m service.execution.compilation &&
 FROM python:3.11-slim-bookworm
 
 # A volume that is mounted at a folder of the image is given that folder's owner.
-RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin polhode && mkdir /data && chown 10001 /data
+RUN useradd --uid 10001 --no-create-home --shell /usr/sbin/nologin polhode && mkdir /data && chown 10001 /data
 COPY --from=build /polhode /polhode
 WORKDIR /polhode
 ENV PATH=/polhode/environment/bin:$PATH \
