@@ -32,6 +32,11 @@ BITS = 320
 """Working precision of the set-up: differences of 1e-90 of the terms are taken as zero."""
 
 
+def recorded_among(numbers: Iterable[Any]) -> Any:
+    """Return one of the numbers that is no ball but records what is done with it, None where none is."""
+    return next((x for x in numbers if type(x) is not arb), None)
+
+
 def entry(numbers: Mapping[Any, Ball], key: Any) -> Ball:
     """Return a number of a sparse array, zero where it has none."""
     found = numbers.get(key)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero, recorded_among
 
 Line = dict[int, Ball]
 
@@ -36,8 +36,11 @@ class Elimination:
         self.pivots: dict[int, tuple[Line, Ball]] = {}
         self._priority = priority
 
-    def _merit(self, unknown: int, coefficient: Ball) -> tuple[int, float]:
-        return (self._priority[unknown] if self._priority else 0, abs(float(coefficient.mid())))
+    def _pivot(self, rest: Line) -> int:
+        """Return which unknown of an equation to determine: of those of the first priority the one that counts most."""
+        first = max((self._priority[j] for j in rest), default=0) if self._priority else 0
+        unknowns = [j for j in rest if not self._priority or self._priority[j] == first]
+        return unknowns[largest_of([rest[j] for j in unknowns])] if len(unknowns) > 1 else unknowns[0]
 
     def add(self, line: Mapping[int, Ball], value: Ball) -> Ball | None:
         """Add an equation; return None if it determined something, else what is left of its right-hand side."""
@@ -49,7 +52,7 @@ class Elimination:
 
     def determine(self, rest: Line, value: Ball) -> None:
         """Add an equation of free unknowns only, of which there is at least one."""
-        pivot = max(rest, key=lambda j: self._merit(j, rest[j])) if len(rest) > 1 else next(iter(rest))
+        pivot = self._pivot(rest) if len(rest) > 1 else next(iter(rest))
         factor = rest.pop(pivot)
         rest = {j: x / factor for j, x in rest.items()}
         value = value / factor
@@ -97,22 +100,38 @@ def independent(lines: Iterable[Mapping[int, Ball]], share: float = 0.0) -> list
     elimination = Elimination()
     found, doubtful = [], []
     for i, line in enumerate(lines):
-        rest, size = elimination.reduced(line, ZERO)[0], _largest(line)
-        if _largest(rest) <= max(share, CLEAR) * size:
+        rest = elimination.reduced(line, ZERO)[0]
+        if is_share_of([*rest.values()], max(share, CLEAR), [*line.values()]):
             doubtful.append((i, line))
         else:
             elimination.determine(rest, ZERO)
             found.append(i)
     for i, line in doubtful:
         rest = elimination.reduced(line, ZERO)[0]
-        if rest and _largest(rest) > share * _largest(line):
+        if rest and not is_share_of([*rest.values()], share, [*line.values()]):
             elimination.determine(rest, ZERO)
             found.append(i)
     return sorted(found)
 
 
-def _largest(line: Mapping[int, Ball]) -> float:
-    return max((abs(float(x.mid())) for x in line.values()), default=0.0)
+def largest_of(numbers: Sequence[Ball]) -> int:
+    """Return the place of the largest magnitude among numbers, to the digits of doubles."""
+    recorded = recorded_among(numbers)
+    if recorded is not None:
+        found: int = recorded.applied(largest_of, numbers)
+        return found
+    sizes = [abs(float(x.mid())) for x in numbers]
+    return sizes.index(max(sizes))
+
+
+def is_share_of(numbers: Sequence[Ball], share: float, others: Sequence[Ball]) -> bool:
+    """Return whether the largest of numbers is at most a share of the largest of others, to the digits of doubles."""
+    recorded = recorded_among([*numbers, *others])
+    if recorded is not None:
+        found: bool = recorded.applied(is_share_of, numbers, share, others)
+        return found
+    sizes, whole = ([abs(float(x.mid())) for x in one] for one in (numbers, others))
+    return max(sizes, default=0.0) <= share * max(whole, default=0.0)
 
 
 def _subtract(line: Line, key: int, value: Ball) -> None:

@@ -6,12 +6,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
-from flint import arb_mat
-
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.multibody.algebra.large_systems import LARGE, solved_from_doubles
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, entry, evaluated, is_zero
 from core.multibody.algebra.rank import Elimination, independent
+from core.multibody.algebra.square_systems import solved
 from core.multibody.laws.series import values_at
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.measures import Measures
@@ -117,14 +116,13 @@ def accelerations(table: Table) -> tuple[list[Ball], list[int]]:
         entries.update({(count + k, j): value for j, value in lines[r].items()})
         entries.update({(j, count + k): -value for j, value in table.rows[r].pushed(table.q).items()})
     right = [*table.forces(), *(table.convective(table.rows[r]) for r in chosen)]
-    solved = solved_from_doubles(entries, right) if size >= LARGE else None
-    if solved is None:
-        matrix = arb_mat([[entry(entries, (i, j)) for j in range(size)] for i in range(size)])
+    found: Sequence[Ball] | None = solved_from_doubles(entries, right) if size >= LARGE else None
+    if found is None:
         try:
-            solved = matrix.solve(arb_mat([[x] for x in right])).entries()
+            found = solved([[entry(entries, (i, j)) for j in range(size)] for i in range(size)], right)
         except ZeroDivisionError:
             raise weightless(table, range(count), lines) from None
-    return solved[:count], chosen
+    return list(found[:count]), chosen
 
 
 def weightless(table: Table, indices: Iterable[int], lines: Iterable[dict[int, Ball]]) -> InvalidParameter:

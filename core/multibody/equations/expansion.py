@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from flint import arb_mat
 
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, entry, is_zero
+from core.multibody.algebra.square_systems import inverse, times_inverse
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import weightless
 from core.multibody.equations.varying_lines import (
@@ -109,11 +110,15 @@ def slope(series: Sequence[Ball]) -> Series:
 
 def saddle(table: Table, chosen: Sequence[int]) -> arb_mat:
     """Return the matrix [M -(W + X)^T; W 0] of chosen rows at the state of a table."""
+    return arb_mat(_lines(table, chosen))
+
+
+def _lines(table: Table, chosen: Sequence[int]) -> list[list[Ball]]:
     size = len(table.names) + len(chosen)
-    entries = [[ZERO] * size for _ in range(size)]
+    found = [[ZERO] * size for _ in range(size)]
     for (i, j), x in _entries(table, chosen).items():
-        entries[i][j] = x
-    return arb_mat(entries)
+        found[i][j] = x
+    return found
 
 
 def _entries(table: Table, chosen: Sequence[int]) -> dict[tuple[int, int], Ball]:
@@ -188,7 +193,7 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     lines = [row.line(table.q) for row in table.rows]
     chosen = independent(lines) if chosen is None else chosen
     try:
-        inverse = saddle(table, chosen).inv() if count + len(chosen) else arb_mat(0, 0)
+        inverted = inverse(_lines(table, chosen)) if count + len(chosen) else None
     except ZeroDivisionError:
         raise weightless(table, range(count), lines) from None
     places: list[Series] = [[q, v] for q, v in zip(table.q, table.v, strict=True)]
@@ -208,7 +213,7 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
                 add_onset(matrix, table.rows[chosen[n]], found[n][0], rates, k)
                 pushing[n] = joined(varying[n], friction_entries(table, table.rows[chosen[n]], places, rates))
             try:
-                inverse = matrix.inv()
+                inverted = matrix.inv()
             except ZeroDivisionError:
                 # An acceleration of rounding alone: the slip begins with a later power of time.
                 onsets = []
@@ -230,7 +235,7 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
             for j, series in varying[n].items():
                 total = total + convolved(series.varying(k + 1), rates[j])
             right[count + n] = right[count + n] - (k + 1) * total
-        solved = (inverse * arb_mat([[x] for x in right])).entries() if right else []
+        solved = times_inverse(inverted, right) if right else []
         for i in range(count):
             places[i].append(solved[i] / ((k + 1) * (k + 2)))
             rates[i].append(solved[i] / (k + 1))

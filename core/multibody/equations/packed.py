@@ -14,9 +14,10 @@ from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from flint import arb
 
 from core.arrays import Floats, Integers
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.polynomials import ZERO, Ball, recorded_among
 from core.multibody.equations.expansion import expansion
 from core.multibody.laws.kernel import PackedLaws
 from core.multibody.laws.law import Law
@@ -113,14 +114,31 @@ class Units:
 
 def exponent(ball: Ball) -> int | None:
     """Return the exponent of two of a number, None of zero."""
+    if type(ball) is not arb:
+        # One that is recorded has it for a decision.
+        found: int | None = ball.decided(exponent, ball)
+        return found
     if 0 in ball:
         return None
     mantissa, power = ball.mid().man_exp()
     return int(power) + int(abs(mantissa)).bit_length()
 
 
+def largest_exponent(balls: Sequence[Ball]) -> int | None:
+    """Return the exponent of two of the largest of some numbers, None where all are zero or there are none."""
+    recorded = recorded_among(balls)
+    if recorded is not None:
+        found: int | None = recorded.decided(largest_exponent, balls)
+        return found
+    return _most([exponent(x) for x in balls])
+
+
 def pair(ball: Ball, power: int) -> tuple[float, float]:
     """Return a number times a power of two as an unevaluated sum of two doubles."""
+    if type(ball) is not arb:
+        # One that is recorded stands for those of all members.
+        placed: tuple[float, float] = ball.pair(power)
+        return placed
     middle = (ball * _two(power) if power else ball).mid()
     high = float(middle)
     return high, float(middle - high)
@@ -167,13 +185,8 @@ def _gyration(table: Table) -> list[int]:
 
 def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     """Return units in which coordinates, rates and masses are of the order of one."""
-    sizes = [exponent(x) for i, x in enumerate(table.q) if table.units[i] == "m"]
-    rates = [exponent(x) for i, x in enumerate(table.v) if table.units[i] == "m"]
-    turns = [exponent(x) for i, x in enumerate(table.v) if table.units[i] in ("1", "rad")]
-    pulls = [exponent(x) for i, x in enumerate(acceleration) if table.units[i] == "m"]
-    spins = [exponent(x) for i, x in enumerate(acceleration) if table.units[i] in ("1", "rad")]
-    size, rate, pull = _most(sizes), _most(rates), _most(pulls)
-    turn, spin = _most(turns), _most(spins)
+    size, rate, pull = (_largest_of(table, x, ("m",)) for x in (table.q, table.v, acceleration))
+    turn, spin = (_largest_of(table, x, ("1", "rad")) for x in (table.v, acceleration))
     pushes = _pushes(table)
     heaviest = _most([*map(exponent, table.load.values()), *(e for _, e in pushes)])
     inert = _most([exponent(x) for (i, j), x in table.mass.items() if i == j])
@@ -234,6 +247,11 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         ]
         rows.append(-max(terms, default=0))
     return Units(lengths, time, max(masses, default=0), rows)
+
+
+def _largest_of(table: Table, numbers: Sequence[Ball], units: Sequence[str]) -> int | None:
+    """Return the exponent of the largest number of the coordinates that have some units."""
+    return largest_exponent([x for x, unit in zip(numbers, table.units, strict=True) if unit in units])
 
 
 def _pushes(table: Table) -> list[tuple[int, int]]:

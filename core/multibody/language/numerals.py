@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
+from operator import methodcaller
 from typing import Any, Literal
 
 from flint import arb, fmpq
@@ -328,8 +329,9 @@ BALLS = Arithmetic[Ball](
     arb.pi,
     _quotient,
     _power,
-    {name: abs if name == "abs" else getattr(arb, name) for name in FUNCTIONS}
-    | {"atan2": arb.atan2, "sqrt": _root, "asin": _of_a_sine(arb.asin), "acos": _of_a_sine(arb.acos)}
-    | {"min": arb.min, "max": arb.max, "sign": arb.sgn, "if": lambda c, a, b: a if c > 0 else b},
+    {name: abs if name == "abs" else methodcaller(name) for name in FUNCTIONS}
+    | {"sqrt": _root, "asin": _of_a_sine(methodcaller("asin")), "acos": _of_a_sine(methodcaller("acos"))}
+    | {"atan2": lambda y, x: y.atan2(x), "min": lambda a, b: a.min(b), "max": lambda a, b: a.max(b)}
+    | {"sign": methodcaller("sgn"), "if": lambda c, a, b: a if c > 0 else b},
 )
 """Formulas in balls of the precision of the context."""

@@ -48,14 +48,14 @@ def put_back(form: LaneForm, space: LaneSpace, lane: int) -> None:
 
 
 @kernel()
-def ends_of_steps(space: LaneSpace, end: float, fresh: Integers, member: Integers, last: Integers) -> None:
+def ends_of_steps(space: LaneSpace, ends: Floats, fresh: Integers, member: Integers, last: Integers) -> None:
     """Limit the steps of all lanes to the time that is left; a lane that cannot go on ends, one that is new waits."""
     for lane in range(WIDTH):
         last[lane] = 0
         if member[lane] < 0 or fresh[lane] == 1:
             space.h[lane] = 0.0
             continue
-        left = (end - space.clock[0, lane]) - space.clock[1, lane]
+        left = (ends[member[lane]] - space.clock[0, lane]) - space.clock[1, lane]
         if not space.h[lane] > SHORTEST * max(1.0, abs(space.clock[0, lane])):
             space.alive[lane] = 0
             space.h[lane] = 0.0
@@ -68,7 +68,7 @@ def ends_of_steps(space: LaneSpace, end: float, fresh: Integers, member: Integer
 def follow_in_doubles(
     form: LaneForm,
     numbers: Floats,
-    end: float,
+    ends: Floats,
     order: int,
     tolerance: float,
     times: Floats,
@@ -78,15 +78,15 @@ def follow_in_doubles(
     turns: Integers,
     reached: Integers,
 ) -> None:
-    """Follow members to a time, and fill in their states at some times.
+    """Follow each member to a time, and fill in their states at some times.
 
     Parameters
     ----------
     numbers : (members, numbers)
-    end : float
-        In the units of the tables, positive.
+    ends : (members,)
+        Times in the units of the tables, positive.
     times : (members, t)
-        Ascending, from 0 to the end.
+        Ascending, from 0 to the ends.
     seen : (members, d, 2, n + 1)
         Coefficients of two components of directions, relative to their starts, whose turns are counted; the last of
         each is a constant.
@@ -121,7 +121,7 @@ def follow_in_doubles(
         lane_changes(form, space, 1)
         lane_coefficients(form, space, 0)
         lane_steps(form, space, tolerance)
-        ends_of_steps(space, end, fresh, member, last)
+        ends_of_steps(space, ends, fresh, member, last)
         _half_way(form, space, middle)
         for lane in range(WIDTH):
             if member[lane] >= 0 and fresh[lane] == 0:

@@ -29,7 +29,7 @@ from core.multibody.motion.series_pairs import LAST_DIGITS
 def follow_in_pairs(
     form: LaneForm,
     numbers: Floats,
-    end: float,
+    ends: Floats,
     order: int,
     tolerance: float,
     times: Floats,
@@ -66,7 +66,7 @@ def follow_in_pairs(
                 if not math.isfinite(space.path[0, order, i, lane]):
                     space.alive[lane] = 0
         lane_steps(form, space, tolerance)
-        ends_of_steps(space, end, fresh, member, last)
+        ends_of_steps(space, ends, fresh, member, last)
         _move(form, space)
         for lane in range(WIDTH):
             for i in range(n):

@@ -8,14 +8,15 @@ the operations of the record give its numbers to the bit: they are those that wo
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx
 
 from core.multibody.algebra.polynomials import Ball
-from core.multibody.equations.packed import exponent, pair
+from core.multibody.equations.packed import pair
 
 
 class NotRecorded(Exception):
@@ -34,14 +35,26 @@ class Record:
         Operations, each of which fills the next place, and decisions, which fill none.
     constants : list
         What they use beside places.
-    outputs : list of (text, places that it uses)
-        Numbers of the table, each as a pair of doubles.
+    decisions : dict of str to (places that it uses, outcome)
+        Those by which members are told apart.
+    outputs : dict of int to int
+        Places of the numbers of the table, numbered.
+    numbers : dict of (int, int) to int
+        Outputs times powers of two, as they stand in the table, numbered.
+    functions : dict of str to callable
+        Those that the steps call.
+    complete : bool
+        Whether nothing more is decided, so that the numbers of the table may be asked for.
     """
 
     inputs: int
     steps: list[tuple[str, tuple[int, ...], int | None]] = field(default_factory=list)
     constants: list[Any] = field(default_factory=list)
-    outputs: list[tuple[str, int]] = field(default_factory=list)
+    decisions: dict[str, tuple[tuple[int, ...], Any]] = field(default_factory=dict)
+    outputs: dict[int, int] = field(default_factory=dict)
+    numbers: dict[tuple[int, int], int] = field(default_factory=dict)
+    functions: dict[str, Callable[..., Any]] = field(default_factory=dict)
+    complete: bool = False
     _known: dict[str, Any] = field(default_factory=dict)
     _names: dict[int, str] = field(default_factory=dict)
     _count: int = 0
@@ -76,15 +89,11 @@ class Record:
         text = form.format(*(self.written(operand, used) for operand in operands))
         if text in self._known:
             return self._known[text]
-        if isinstance(value, arb):
-            result: Any = RecordedBall(value, self._count, self)
-            self.steps.append((f"x{self._count} = {text}", tuple(used), self._count))
-            self._count += 1
+        if isinstance(value, (arb, arb_mat)):
+            result: Any = self._placed(text, used, value)
         elif isinstance(value, tuple):
-            result = tuple(self.found(f"({text})[{k}]", (), one) for k, one in enumerate(value))
-            # The places stand in the text.
-            for k, one in enumerate(result):
-                self.steps[-len(value) + k] = (self.steps[-len(value) + k][0], tuple(used), one.place)
+            whole = self._placed(text, used, value)
+            result = tuple(self.found(f"{{}}[{k}]", (whole,), one) for k, one in enumerate(value))
         elif isinstance(value, bool):
             result = value
             self.steps.append((f"if {'not ' if value else ''}({text}): return None", tuple(used), None))
@@ -96,29 +105,62 @@ class Record:
         self._known[text] = result
         return result
 
-    def output(self, value: RecordedBall, power: int) -> int:
-        """Have a number times a power of two among the outputs, and return its place there."""
+    def _placed(self, text: str, used: Sequence[int], value: Any) -> RecordedBall:
+        """Return a value as that of an operation."""
+        self.steps.append((f"x{self._count} = {text}", tuple(used), self._count))
+        self._count += 1
+        return RecordedBall(value, self._count - 1, self)
+
+    def told_apart(self, form: str, operands: Sequence[Any], value: Any) -> Any:
+        """Have what a form of operands comes out as among the outcomes by which members are told apart."""
         used: list[int] = []
-        self.outputs.append((f"pair({self.written(value, used)}, {power})", value.place))
-        return len(self.outputs) - 1
+        text = form.format(*(self.written(operand, used) for operand in operands))
+        if text not in self.decisions:
+            self.decisions[text] = (tuple(used), value)
+        return self.decisions[text][1]
 
-    def repeated(self) -> Callable[..., tuple[tuple[float, float], ...] | None]:
-        """Return what computes the outputs from other balls; None from those for which a decision comes out otherwise.
+    def output(self, place: int, power: int) -> int:
+        """Have a number times a power of two among those of the table, and return its place there."""
+        output = self.outputs.setdefault(place, len(self.outputs))
+        return self.numbers.setdefault((output, power), len(self.numbers))
 
-        What no output and no decision depends on is left out.
+    @property
+    def outcomes(self) -> tuple[Any, ...]:
+        """The outcomes by which members are told apart."""
+        return tuple(value for _, value in self.decisions.values())
+
+    def alike(self, other: Record) -> bool:
+        """Return whether another record has the same steps, decisions and outputs."""
+        return (
+            self.steps == other.steps
+            and self.constants_alike(other)
+            and list(self.decisions) == list(other.decisions)
+            and list(self.outputs) == list(other.outputs)
+        )
+
+    def constants_alike(self, other: Record) -> bool:
+        """Return whether the constants are the same balls."""
+        pairs = zip(self.constants, other.constants, strict=False)
+        return len(self.constants) == len(other.constants) and all(repr(a) == repr(b) for a, b in pairs)
+
+    def repeated(self) -> Callable[..., tuple[tuple[float, ...], tuple[Any, ...]] | None]:
+        """Return what computes outputs and outcomes from other balls, None where a step comes out otherwise.
+
+        Outputs are pairs of doubles, one after another. What nothing depends on is left out.
         """
-        needed = {place for _, place in self.outputs}
+        needed = {*self.outputs, *(place for used, _ in self.decisions.values() for place in used)}
         lines: list[str] = []
         for text, used, place in reversed(self.steps):
             if place is None or place in needed:
                 needed.update(used)
                 lines.append(text)
         arguments = ", ".join([*(f"x{k}" for k in range(self.inputs)), *_bound(self.constants)])
-        results = "".join(f"{text}, " for text, _ in self.outputs)
-        source = "\n    ".join([f"def repeat({arguments}):", *reversed(lines), f"return ({results})"])
-        names: dict[str, Any] = {"pair": pair, "exponent": exponent, "constants": self.constants}
+        results = "".join(f"*pair(x{place}, 0), " for place in self.outputs)
+        outcomes = "".join(f"{text}, " for text in self.decisions)
+        source = "\n    ".join([f"def repeat({arguments}):", *reversed(lines), f"return ({results}), ({outcomes})"])
+        names = {"pair": pair, "constants": self.constants, **self.functions}
         exec(compile(source, "<record>", "exec"), names)
-        found: Callable[..., tuple[tuple[float, float], ...] | None] = names["repeat"]
+        found: Callable[..., tuple[tuple[float, ...], tuple[Any, ...]] | None] = names["repeat"]  # type: ignore[assignment]
         return found
 
 
@@ -139,8 +181,18 @@ def _binary(sign: str, operation: Callable[[Any, Any], Any]) -> tuple[Callable[.
 
 
 def plain(value: Any) -> Any:
-    """Return a ball without its record."""
+    """Return a ball, or a sequence of balls, without their record."""
+    if isinstance(value, (list, tuple)):
+        return [plain(one) for one in value]
     return value.ball if isinstance(value, RecordedBall) else value
+
+
+def _form(value: Any, operands: list[Any]) -> str:
+    """Return the form of an argument, whose numbers are added to the operands."""
+    if isinstance(value, (list, tuple)):
+        return f"({''.join(f'{_form(one, operands)}, ' for one in value)})"
+    operands.append(value)
+    return "{}"
 
 
 class RecordedBall:
@@ -190,17 +242,29 @@ class RecordedBall:
         found: bool = self.record.found("bool({})", (self,), bool(self.ball))
         return found
 
-    @property
-    def exponent(self) -> int | None:
-        """Exponent of two, recorded as a decision; see `equations.packed.exponent`."""
-        value = exponent(self.ball)
-        if value is None:
-            self.record.found("exponent({}) is None", (self,), True)
-            return None
-        found: int = self.record.found("exponent({})", (self,), value)
-        return found
+    def decided(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Return a decision between many outcomes, such as an exponent of two, by which members are told apart."""
+        operands: list[Any] = []
+        self.record.functions[function.__name__] = function
+        form = f"{function.__name__}({', '.join(_form(one, operands) for one in arguments)})"
+        return self.record.told_apart(form, operands, function(*map(plain, arguments)))
+
+    def pair(self, power: int) -> tuple[Placeholder, Placeholder]:
+        """Return what stands for the doubles of the number times a power of two."""
+        return Placeholder(self, power, 0), Placeholder(self, power, 1)
+
+    def applied(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Return what a function makes of numbers, or of sequences of them, some of which are recorded."""
+        operands: list[Any] = []
+        self.record.functions[function.__name__] = function
+        form = f"{function.__name__}({', '.join(_form(one, operands) for one in arguments)})"
+        value = function(*map(plain, arguments))
+        return self.record.found(form, operands, tuple(value) if isinstance(value, list) else value)
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
+        if name.startswith("_"):
+            # By such names other packages ask what something is.
+            raise AttributeError(name)
         method = getattr(self.ball, name)
 
         def call(*arguments: Any) -> Any:
@@ -208,3 +272,25 @@ class RecordedBall:
             return self.record.found(form, (self, *arguments), method(*map(plain, arguments)))
 
         return call
+
+
+CODE = 0x7FF8_5C00_0000_0000
+"""Bits of the doubles, none of which is a number, that stand for numbers of members; the last ones say for which."""
+
+
+class Placeholder:
+    """What stands for a double that members have each of their own; nothing can be computed with it.
+
+    In an array of doubles it becomes one that is no number and says whose place it is.
+    """
+
+    def __init__(self, number: RecordedBall, power: int, part: int) -> None:
+        self.number, self.power, self.part = number, power, part
+
+    def __float__(self) -> float:
+        record = self.number.record
+        if not record.complete:
+            raise NotRecorded("a decision by doubles")
+        code = CODE + 2 * record.output(self.number.place, self.power) + self.part
+        found: float = struct.unpack("d", struct.pack("Q", code))[0]
+        return found

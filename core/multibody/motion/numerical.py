@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -36,7 +37,7 @@ COLLIDED = 2.0**13
 """Inverse of a distance, in units of the scene, from which on a singular place is a collision: distances fall as the
 power 2/3 of the time that is left, to 1e-8 where steps are the shortest, and are of the order of one elsewhere."""
 
-_SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
+DOUBLES_SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 
 _CHUNK = 2**21
@@ -101,12 +102,14 @@ class Numerical(Motion):
 
     Attributes
     ----------
+    chosen : sequence of int
+        The rows of the table that are in the arrays.
     rows : ndarray of int
-        Numbers, among the rows in the arrays, of those that may come to depend on one another.
+        Numbers, among these, of those that may come to depend on one another.
     """
 
     table: Table
-    arrays: Packed
+    chosen: Sequence[int]
     units: Units
     name: str = "Taylor series"
     why: str = "several degrees of freedom are coupled by quadratic terms"
@@ -122,7 +125,12 @@ class Numerical(Motion):
         """Return the motion of a table in its own units."""
         units = units_of(table, acceleration)
         rows = lines_that_may_depend(table, chosen)
-        return cls(table, packed(table, chosen, units), units, why=why, rows=rows)
+        return cls(table, chosen, units, why=why, rows=rows)
+
+    @cached_property
+    def arrays(self) -> Packed:
+        """Its table for compiled code."""
+        return packed(self.table, self.chosen, self.units)
 
     def keep_to_pairs(self) -> None:
         """Have it answered by pairs, judged by a coarser run in pairs."""
@@ -166,7 +174,7 @@ class Numerical(Motion):
             return False
         # Runs by other rows differ by rounding, and are made anew.
         self._met, self.rows = met, lines_that_may_depend(table, chosen)
-        self.arrays = packed(table, chosen, self.units)
+        self.chosen, self.arrays = chosen, packed(table, chosen, self.units)
         self._runs.clear()
         return True
 
@@ -174,7 +182,7 @@ class Numerical(Motion):
         """Return the states, and how far they are from a run in pairs."""
         names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "reference")
         (q, v), (other, rate) = (self.by(kind, times) for kind in names)
-        share = _SHARE if names[0] == "doubles" else _FINE_SHARE
+        share = DOUBLES_SHARE if names[0] == "doubles" else _FINE_SHARE
         q_error, v_error = (self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
         if self.lost_to_doubles:
             q_error, v_error = 16.0 * q_error, 16.0 * v_error

@@ -31,6 +31,7 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     is_zero,
     product,
+    recorded_among,
     substituted,
 )
 from core.multibody.algebra.rank import Elimination, Line, independent
@@ -54,12 +55,19 @@ def _may_depend(table: Table, rows: Sequence[Row]) -> bool:
     """Return whether the lines of measures may depend on one another at the start."""
     if not rows:
         return False
-    lines = np.zeros((len(rows), len(table.names)))
-    for k, row in enumerate(rows):
-        for j, value in row.line(table.q).items():
-            lines[k, j] = float(value.mid())
+    lines = [row.line(table.q) for row in rows]
+    return dependent_in_doubles([[entry(line, j) for j in range(len(table.names))] for line in lines])
+
+
+def dependent_in_doubles(rows: Sequence[Sequence[Ball]]) -> bool:
+    """Return whether lines may depend on one another, as far as doubles tell."""
+    recorded = recorded_among(x for row in rows for x in row)
+    if recorded is not None:
+        found: bool = recorded.applied(dependent_in_doubles, rows)
+        return found
+    lines = np.array([[float(x.mid()) for x in row] for row in rows])
     size = np.max(np.abs(lines), axis=1)
-    if len(rows) > len(table.names) or not np.all(size > 0.0) or not np.all(np.isfinite(size)):
+    if len(rows) > lines.shape[1] or not np.all(size > 0.0) or not np.all(np.isfinite(size)):
         return True
     if len(rows) == 1:
         return False

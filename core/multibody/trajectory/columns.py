@@ -25,7 +25,7 @@ NEAREST = 2.0**-53 * (1 + 2.0**-20)
 """The same for coordinates and rates that are the doubles nearest to pairs."""
 _SOLVED = 2.0**-100
 """Share of the largest multiplier, coordinate or rate to which all of them are known."""
-_MARGIN = 1.02
+MARGIN = 1.02
 """Margin for the reference's own error, which is some 2^-14 of what it judges."""
 
 
@@ -306,4 +306,4 @@ def _at(function: StateFunction, q: Floats, v: Floats) -> Floats:
 
 def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
     size = np.abs(values) if values.ndim == 1 else row_lengths(values)
-    return _MARGIN * largest(errors) + rounding * largest(size)
+    return MARGIN * largest(errors) + rounding * largest(size)
