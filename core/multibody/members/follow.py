@@ -24,6 +24,7 @@ from core.multibody.members.member_columns import (
     with_natural_sizes,
     worst,
 )
+from core.multibody.members.member_audit import MemberWindows, windows_of
 from core.multibody.members.plan import Plan, Plans, Setup
 from core.multibody.motion.numerical import (
     DOUBLES_SHARE,
@@ -58,6 +59,12 @@ class Followed:
         The largest error relative to these.
     checked : dict of str to MemberColumn
         At the times of the audit.
+    windows : MemberWindows
+        These times.
+    written : ndarray, shape (members, k)
+        The places of bodies as they are written, each with its angle where it has one.
+    states_alone : ndarray of bool, shape (members,)
+        Whether places, attitudes and velocities alone differ from those of other such members.
     """
 
     members: Integers
@@ -65,6 +72,9 @@ class Followed:
     scales: Mapping[str, Floats]
     error: Floats
     checked: dict[str, MemberColumn]
+    windows: MemberWindows
+    written: Floats
+    states_alone: Integers
 
 
 @dataclass
@@ -77,7 +87,7 @@ class _Group:
     outputs: list[tuple[float, ...]]
 
 
-def followed(plans: Plans, numbers: Floats, times: Floats, accuracy: float, audit_times: Floats) -> list[Followed]:
+def followed(plans: Plans, numbers: Floats, times: Floats, accuracy: float) -> list[Followed]:
     """Follow members and return those whose errors are as small as requested.
 
     Parameters
@@ -86,8 +96,6 @@ def followed(plans: Plans, numbers: Floats, times: Floats, accuracy: float, audi
         What each has at the places of the plans.
     times : ndarray, shape (t,)
         Not negative, not all zero (s).
-    audit_times : ndarray, shape (members, a)
-        Further times at which the columns are wanted, not beyond these.
     """
     groups: dict[tuple[object, ...], _Group] = {}
     for k, row in enumerate(numbers.tolist()):
@@ -101,18 +109,19 @@ def followed(plans: Plans, numbers: Floats, times: Floats, accuracy: float, audi
         group.members.append(k)
         group.outputs.append(outputs)
     with np.errstate(over="ignore", invalid="ignore"):
-        return [_of_group(group, times, accuracy, audit_times[group.members]) for group in groups.values()]
+        return [_of_group(group, numbers[group.members], times, accuracy) for group in groups.values()]
 
 
-def _of_group(group: _Group, times: Floats, accuracy: float, audit_times: Floats) -> Followed:
+def _of_group(group: _Group, numbers: Floats, times: Floats, accuracy: float) -> Followed:
     members, outputs = np.array(group.members), np.array(group.outputs)
     count, form = len(members), group.setups[0].form
-    rows, slopes, offsets, starts = _filled(group, outputs)
+    rows, slopes, offsets, starts, written = _filled(group, outputs)
     ups = np.array([setup.units.up for setup in group.setups])
     clock = np.array([two_to(setup.units.time) for setup in group.setups])
     last = float(times.max())
+    windows = windows_of(numbers, clock, last)
     asked = np.concatenate([times, last * PLACES_BETWEEN])
-    every = np.concatenate([np.tile(asked, (count, 1)), audit_times], axis=1)
+    every = np.concatenate([np.tile(asked, (count, 1)), windows.times], axis=1)
     order = np.argsort(every, axis=1, kind="stable")
     scaled = np.take_along_axis(every, order, axis=1) * (1.0 / clock)[:, None]
     ends = last * (1.0 / clock)
@@ -144,22 +153,25 @@ def _of_group(group: _Group, times: Floats, accuracy: float, audit_times: Floats
         keep &= np.isfinite(column.values).reshape(count, -1).all(axis=1) & np.isfinite(column.error)
     return Followed(
         members[keep],
-        {name: _of(column, keep) for name, column in columns.items()},
+        {name: column.of(keep) for name, column in columns.items()},
         {unit: scale[keep] for unit, scale in scales.items()},
         error[keep],
-        {name: _of(column, keep) for name, column in checked.items()},
+        {name: column.of(keep) for name, column in checked.items()},
+        windows.at(keep),
+        written[keep, :, 0],
+        np.array([setup.states_alone for setup in group.setups])[keep],
     )
 
 
-def _filled(group: _Group, outputs: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+def _filled(group: _Group, outputs: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """Return the numbers of the tables of all members, their slopes and offsets, and the starts of directions."""
-    names = ("numbers", "slopes", "offsets", "starts")
+    names = ("numbers", "slopes", "offsets", "starts", "written")
     found = [np.empty((len(outputs), *getattr(group.setups[0], name).values.shape)) for name in names]
     for setup in {id(one): one for one in group.setups}.values():
         own = np.array([one is setup for one in group.setups])
         for array, name in zip(found, names, strict=True):
             array[own] = getattr(setup, name).filled(outputs[own])
-    return found[0], found[1], found[2], found[3]
+    return found[0], found[1], found[2], found[3], found[4]
 
 
 def _states(
@@ -197,12 +209,6 @@ def _parts(states: MemberStates) -> tuple[Floats, Floats, Floats, Floats, Intege
 
 def _at(states: MemberStates, part: slice) -> MemberStates:
     return MemberStates(*(x[:, part] for x in _parts(states)))
-
-
-def _of(column: MemberColumn, keep: Integers) -> MemberColumn:
-    return MemberColumn(
-        column.values[keep], column.unit, column.error[keep], column.largest[keep], column.scale[keep]
-    )
 
 
 def _countable(states: MemberStates, directions: Sequence[object], starts: Floats) -> Integers:

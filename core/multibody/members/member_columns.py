@@ -56,6 +56,11 @@ class MemberColumn:
     largest: Floats
     scale: Floats
 
+    def of(self, members: Integers) -> MemberColumn:
+        """Return the quantity of some members, by a mask or their rows."""
+        own = (self.error[members], self.largest[members], self.scale[members])
+        return MemberColumn(self.values[members], self.unit, *own)
+
 
 @kernel()
 def spread_members(slopes: Floats, offsets: Floats, z: Floats) -> Floats:

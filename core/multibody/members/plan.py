@@ -12,10 +12,10 @@ from core.arrays import Floats, Integers
 from core.errors import MechanicsError, Path
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Units, pair, state
-from core.multibody.language.numerals import Numerals
+from core.multibody.language.numerals import OF_STATE, Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.members.lane_table import LaneForm, form_of, numbers_of
-from core.multibody.members.recorded_balls import CODE, NotRecorded, Record
+from core.multibody.members.recorded_balls import CODE, NotRecorded, Record, RecordedBall
 from core.multibody.motion.modelling import Modelled, modelled
 from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.smooth_motion import smooth_motion
@@ -95,6 +95,10 @@ class Setup:
         The coordinates as described in those of the reduced table, as pairs.
     starts : Template
         Of every body with a direction: the start of its two components, and its angle.
+    written : Template
+        Of every body the components of its place as they are written, and of those with a direction the angle.
+    states_alone : bool
+        Whether members differ in places, attitudes and velocities of bodies alone.
     """
 
     form: LaneForm
@@ -103,6 +107,8 @@ class Setup:
     slopes: Template
     offsets: Template
     starts: Template
+    written: Template
+    states_alone: bool
 
 
 @dataclass
@@ -165,11 +171,12 @@ class Plans:
         """Record the set-up of a member, and keep its plan or its tables."""
         record = Record(len(balls))
         instead = dict(zip(self.places, record.begun(balls), strict=True))
-        model = modelled(self.scene, _AsWritten.of(self.scene.let, self.scene.numbers, instead=instead))
+        numerals = _AsWritten.of(self.scene.let, self.scene.numbers, instead=instead)
+        model = modelled(self.scene, numerals)
         # Forces at the start are decided, too.
         ends = smooth_motion(model, np.zeros(0)).events
         record.complete = True
-        setup = _setup_of(model, record)
+        setup = _setup_of(model, numerals, record)
         if ends:
             raise NotRecorded("a motion that ends at the start")
         same = next((plan for plan in self.known if plan.record.alike(record)), None)
@@ -180,7 +187,7 @@ class Plans:
         same.setups[record.outcomes] = setup
 
 
-def _setup_of(model: Modelled, record: Record) -> Setup:
+def _setup_of(model: Modelled, numerals: Numerals, record: Record) -> Setup:
     """Return the tables of a model, whose motion has to be a Taylor series that nothing ends and no row follows."""
     whole, measures = model.whole, model.described.measures
     if len(whole.parts) != 1 or whole.dropped or measures.limits:
@@ -195,10 +202,14 @@ def _setup_of(model: Modelled, record: Record) -> Setup:
         raise NotRecorded("a large table")
     if list(whole.parts[0][0]) != list(range(len(table.names))):
         raise NotRecorded("coordinates in another order")
-    starts = []
+    starts, written = [], []
     for name, frame in coordinates.frames.items():
         if frame.axes is not None:
             raise NotRecorded("attitudes in space")
+        place = numerals.vector(model.described.scene.bodies[name].at, ("bodies", name, "at"), coordinates.dimension)
+        written.extend(pair(x, 0) for x in place)
+        if frame.direction is not None:
+            written.append(pair(coordinates.start_angle(name), 0))
         if frame.turn is None and frame.direction is not None:
             own = [measures.table.q[i] for i in frame.direction]
             starts.append([pair(x, 0) for x in (*own, coordinates.start_angle(name))])
@@ -209,4 +220,11 @@ def _setup_of(model: Modelled, record: Record) -> Setup:
         motion.units,
         *(Template.of(x, record) for x in (numbers, slopes, offsets)),
         Template.of(np.array(starts, dtype=np.float64).reshape(-1, 3, 2), record),
+        Template.of(np.array(written, dtype=np.float64), record),
+        all(_is_of_state(path) for path, x in numerals.every.items() if isinstance(x, RecordedBall)),
     )
+
+
+def _is_of_state(path: Path) -> bool:
+    """Return whether a number says where a body is or how it moves, or has a name alone."""
+    return path[0] == "let" or (path[0] == "bodies" and path[2] in OF_STATE)

@@ -1,0 +1,105 @@
+"""Answers to one question about many scenes that differ in numbers alone: their columns, to the bit as by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.arrays import Floats, Integers
+from core.balls import precision
+from core.errors import Path
+from core.multibody.algebra.polynomials import BITS
+from core.multibody.audit.definitions import description_of
+from core.multibody.language.independent_parts import independent_parts
+from core.multibody.language.scene import Scene
+from core.multibody.members.follow import Followed, followed
+from core.multibody.members.member_audit import TOGETHER, keep_the_laws
+from core.multibody.members.plan import Plans
+
+
+@dataclass(frozen=True)
+class AnsweredTogether:
+    """Members that were answered, with the columns of their motion.
+
+    Attributes
+    ----------
+    members : ndarray of int
+        Their numbers.
+    motion : Followed
+        That of more members, and which rows are theirs.
+    rows : ndarray of int
+    """
+
+    members: Integers
+    motion: Followed
+    rows: Integers
+
+
+def can_be_answered_together(scene: Scene, times: Floats) -> bool:
+    """Return whether members of a scene may be: smooth motions of one part, followed forwards from places as given."""
+    return (
+        scene.assemble is None
+        and not scene.one_sided
+        and not scene.switches
+        and len(times) > 0
+        and bool(times.min() >= 0.0)
+        and bool(times.max() > 0.0)
+        and len(independent_parts(scene)) == 1
+    )
+
+
+def answered_together(
+    scene: Scene,
+    places: Sequence[Path],
+    numbers: Floats,
+    times: Floats,
+    accuracy: float,
+    scene_of: Callable[[Sequence[float]], Scene],
+) -> list[AnsweredTogether]:
+    """Answer members of a scene; those that are left out are to be answered by themselves.
+
+    Parameters
+    ----------
+    scene : Scene
+        With `plan.Varied` in place of the numbers that vary.
+    places : sequence of paths
+        Where these stand in the description.
+    numbers : ndarray, shape (members, k)
+    times : ndarray, shape (t,)
+        As `can_be_answered_together` requires them (s).
+    accuracy : float
+        Largest error of any column, relative to the largest value in columns of its unit, that is tolerated.
+    scene_of : callable
+        From the numbers of a member to its scene, for the audit.
+    """
+    with precision(BITS):
+        found = followed(Plans(scene, places), numbers, times, accuracy)
+    return [
+        AnsweredTogether(one.members[rows], one, rows)
+        for one in found
+        for rows in (_audited(one, numbers, scene_of),)
+        if len(rows)
+    ]
+
+
+def _audited(found: Followed, numbers: Floats, scene_of: Callable[[Sequence[float]], Scene]) -> Integers:
+    """Return the rows of the members that keep all laws."""
+    kept = []
+    for rows in _sets(found):
+        description = description_of(scene_of(numbers[found.members[rows[0]]].tolist()))
+        checked = {name: column.of(rows) for name, column in found.checked.items()}
+        if keep_the_laws(description, checked, found.windows.at(rows), found.written[rows]):
+            kept.append(rows)
+    return np.sort(np.concatenate(kept)) if kept else np.zeros(0, dtype=np.int64)
+
+
+def _sets(found: Followed) -> Iterator[Integers]:
+    """Yield rows of members that may be audited together, of like errors."""
+    order = np.argsort(found.error, kind="stable")
+    alike = order[found.states_alone[order]]
+    for k in range(0, len(alike), TOGETHER):
+        yield alike[k : k + TOGETHER]
+    for row in order[~found.states_alone[order]]:
+        yield np.array([row])
