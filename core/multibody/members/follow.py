@@ -6,7 +6,7 @@ A member that a plan does not hold, that ends, or whose error is larger than req
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from core.arrays import Floats, Integers
 from core.multibody.equations.packed import two_to
 from core.multibody.members.lane_doubles import follow_in_doubles
 from core.multibody.members.lane_pairs import follow_in_pairs
+from core.multibody.members.lane_table import LaneForm
+from core.multibody.members.member_audit import MemberWindows, windows_of
 from core.multibody.members.member_columns import (
     MemberColumn,
     MemberStates,
@@ -24,17 +26,24 @@ from core.multibody.members.member_columns import (
     with_natural_sizes,
     worst,
 )
-from core.multibody.members.member_audit import MemberWindows, windows_of
 from core.multibody.members.plan import Plan, Plans, Setup
 from core.multibody.motion.numerical import (
+    CHECK_ORDER,
+    CHECK_TOLERANCE,
     DOUBLES_SHARE,
+    FINE_MARGIN,
+    FINE_ORDER,
+    FINE_SHARE,
+    FINE_TOLERANCE,
+    GROWTH,
     ORDER,
     REFERENCE_ORDER,
     REFERENCE_TOLERANCE,
     TOLERANCE,
 )
 from core.multibody.search.bands import FLOOR
-from core.multibody.trajectory.column_errors import PLACES_BETWEEN
+from core.multibody.table.frames import Frame
+from core.multibody.trajectory.column_errors import FINEST, PLACES_BETWEEN
 
 SMALLEST = 1e-250
 """Numbers below which scaling by powers of two might lose digits."""
@@ -76,6 +85,19 @@ class Followed:
     written: Floats
     states_alone: Integers
 
+    def of(self, members: Integers) -> Followed:
+        """Return those of some members, by a mask."""
+        return Followed(
+            self.members[members],
+            {name: column.of(members) for name, column in self.columns.items()},
+            {unit: scale[members] for unit, scale in self.scales.items()},
+            self.error[members],
+            {name: column.of(members) for name, column in self.checked.items()},
+            self.windows.at(members),
+            self.written[members],
+            self.states_alone[members],
+        )
+
 
 @dataclass
 class _Group:
@@ -109,58 +131,136 @@ def followed(plans: Plans, numbers: Floats, times: Floats, accuracy: float) -> l
         group.members.append(k)
         group.outputs.append(outputs)
     with np.errstate(over="ignore", invalid="ignore"):
-        return [_of_group(group, numbers[group.members], times, accuracy) for group in groups.values()]
+        found = [_of_group(group, numbers[group.members], times, accuracy) for group in groups.values()]
+        return [one for group_found in found for one in group_found if len(one.members)]
 
 
-def _of_group(group: _Group, numbers: Floats, times: Floats, accuracy: float) -> Followed:
-    members, outputs = np.array(group.members), np.array(group.outputs)
-    count, form = len(members), group.setups[0].form
+@dataclass(frozen=True)
+class _Tables:
+    """Tables of members of one form, with the times at which they are wanted.
+
+    Attributes
+    ----------
+    members : ndarray of int
+    rows, slopes, offsets, starts, written : ndarray
+        By `plan.Setup`.
+    ups : ndarray, shape (members, n)
+        What coordinates of the arrays are multiplied by.
+    clock : ndarray, shape (members,)
+        Units of time (s), powers of two.
+    windows : MemberWindows
+    times : ndarray, shape (members, t)
+        Those of the question, those that tell natural sizes, those of the windows (s).
+    seen : ndarray
+        As `follow_in_doubles` takes it.
+    states_alone : ndarray of bool
+    """
+
+    members: Integers
+    rows: Floats
+    slopes: Floats
+    offsets: Floats
+    starts: Floats
+    written: Floats
+    ups: Floats
+    clock: Floats
+    windows: MemberWindows
+    times: Floats
+    seen: Floats
+    states_alone: Integers
+
+    def at(self, members: Integers) -> _Tables:
+        """Return those of some members."""
+        return _Tables(
+            self.members[members],
+            self.rows[members],
+            self.slopes[members],
+            self.offsets[members],
+            self.starts[members],
+            self.written[members],
+            self.ups[members],
+            self.clock[members],
+            self.windows.at(members),
+            self.times[members],
+            self.seen[members],
+            self.states_alone[members],
+        )
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    """Coordinates and rates of the reduced table in SI units.
+
+    Attributes
+    ----------
+    q, v : ndarray, shape (members, t, n, 2)
+    q_error, v_error : ndarray, shape (members, t, n)
+    known : ndarray of bool, shape (members,)
+        Of which members both runs have reached the end.
+    """
+
+    q: Floats
+    v: Floats
+    q_error: Floats
+    v_error: Floats
+    known: Integers
+
+
+Run = tuple[Floats, Floats, Integers]
+"""Coordinates and rates in the units of tables, of shape (members, t, n, 2), and 1 for those who reached the end."""
+
+
+def _of_group(group: _Group, numbers: Floats, times: Floats, accuracy: float) -> list[Followed]:
+    """Follow members of one form in doubles, and in pairs those for which that is too rough."""
+    form, frames = group.setups[0].form, group.plan.frames
+    tables = _tables(group, numbers, times)
+    doubles, turns = _in_doubles(form, tables)
+    reference = _in_pairs(form, tables, REFERENCE_ORDER, REFERENCE_TOLERANCE)
+    reduced = _measured(tables, doubles, reference, DOUBLES_SHARE)
+    coarse = _states(tables, reduced, turns)
+    found, known = _columns(frames, tables, len(times), coarse, coarse, reduced.known)
+    rough = known & ~(found.error <= accuracy)
+    first = found.of(known & (found.error <= accuracy))
+    if not rough.any() or accuracy < FINEST:
+        return [first]
+    rest = tables.at(rough)
+    fine = _in_pairs(form, rest, FINE_ORDER, FINE_TOLERANCE)
+    check = _in_pairs(form, rest, CHECK_ORDER, CHECK_TOLERANCE)
+    pairs = _measured(rest, fine, check, FINE_SHARE)
+    pairs = replace(
+        pairs,
+        q_error=FINE_MARGIN * pairs.q_error + GROWTH * reduced.q_error[rough],
+        v_error=FINE_MARGIN * pairs.v_error + GROWTH * reduced.v_error[rough],
+    )
+    states = _states(rest, pairs, turns[rough])
+    finer, known = _columns(frames, rest, len(times), states, coarse.of(rough), pairs.known)
+    return [first, finer.of(known & (finer.error <= accuracy))]
+
+
+def _tables(group: _Group, numbers: Floats, times: Floats) -> _Tables:
+    """Return the tables of the members of a group."""
+    outputs = np.array(group.outputs)
     rows, slopes, offsets, starts, written = _filled(group, outputs)
     ups = np.array([setup.units.up for setup in group.setups])
     clock = np.array([two_to(setup.units.time) for setup in group.setups])
     last = float(times.max())
     windows = windows_of(numbers, clock, last)
     asked = np.concatenate([times, last * PLACES_BETWEEN])
-    every = np.concatenate([np.tile(asked, (count, 1)), windows.times], axis=1)
-    order = np.argsort(every, axis=1, kind="stable")
-    scaled = np.take_along_axis(every, order, axis=1) * (1.0 / clock)[:, None]
-    ends = last * (1.0 / clock)
-    back = np.argsort(order, axis=1, kind="stable")
-    directions = [one for one in group.plan.frames.values() if one.turn is None and one.direction is not None]
-    seen = np.zeros((count, len(directions), 2, form.n + 1))
-    for d, frame in enumerate(directions):
-        assert frame.direction is not None
-        own = np.concatenate([slopes[..., 0] * ups[:, None], offsets[..., :1]], axis=2)[:, list(frame.direction)]
+    every = np.concatenate([np.tile(asked, (len(outputs), 1)), windows.times], axis=1)
+    directions = _directions(group.plan.frames)
+    seen = np.zeros((len(outputs), len(directions), 2, slopes.shape[2] + 1))
+    for d, direction in enumerate(directions):
+        own = np.concatenate([slopes[..., 0] * ups[:, None], offsets[..., :1]], axis=2)[:, list(direction)]
         c, s = starts[:, d, 0, 0, None], starts[:, d, 1, 0, None]
         seen[:, d, 0], seen[:, d, 1] = c * own[:, 0] + s * own[:, 1], c * own[:, 1] - s * own[:, 0]
-    shape = (count, every.shape[1], form.n)
-    q, v = np.zeros(shape), np.zeros(shape)
-    turns = np.zeros((*shape[:2], len(directions)), dtype=np.int64)
-    first, second = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
-    follow_in_doubles(form, rows, ends, ORDER, TOLERANCE, scaled, seen, q, v, turns, first)
-    other, rate = np.zeros((*shape, 2)), np.zeros((*shape, 2))
-    follow_in_pairs(form, rows, ends, REFERENCE_ORDER, REFERENCE_TOLERANCE, scaled, other, rate, second)
-    states = _states(slopes, offsets, ups, clock, (q, v), (other, rate), turns)
-    states = MemberStates(*(np.take_along_axis(x, back[:, :, None], axis=1) for x in _parts(states)))
-    values = starts[..., 0]
-    parts = [slice(0, len(times)), slice(len(times), len(asked)), slice(len(asked), every.shape[1])]
-    columns, between, checked = (member_columns(group.plan.frames, _at(states, part), values) for part in parts)
-    columns = with_natural_sizes(columns, between)
-    scales = scales_of(columns)
-    error = worst(columns, scales)
-    keep = (first == 1) & (second == 1) & (error <= accuracy) & _countable(states, directions, values)
-    for column in (*columns.values(), *checked.values()):
-        keep &= np.isfinite(column.values).reshape(count, -1).all(axis=1) & np.isfinite(column.error)
-    return Followed(
-        members[keep],
-        {name: column.of(keep) for name, column in columns.items()},
-        {unit: scale[keep] for unit, scale in scales.items()},
-        error[keep],
-        {name: column.of(keep) for name, column in checked.items()},
-        windows.at(keep),
-        written[keep, :, 0],
-        np.array([setup.states_alone for setup in group.setups])[keep],
-    )
+    alone = np.array([setup.states_alone for setup in group.setups])
+    members = np.array(group.members)
+    return _Tables(members, rows, slopes, offsets, starts, written, ups, clock, windows, every, seen, alone)
+
+
+def _directions(frames: Mapping[str, Frame]) -> list[tuple[int, int]]:
+    """Return the directions whose turns are counted."""
+    return [one.direction for one in frames.values() if one.turn is None and one.direction is not None]
 
 
 def _filled(group: _Group, outputs: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
@@ -174,48 +274,97 @@ def _filled(group: _Group, outputs: Floats) -> tuple[Floats, Floats, Floats, Flo
     return found[0], found[1], found[2], found[3], found[4]
 
 
-def _states(
-    slopes: Floats,
-    offsets: Floats,
-    ups: Floats,
-    clock: Floats,
-    doubles: tuple[Floats, Floats],
-    pairs: tuple[Floats, Floats],
-    turns: Integers,
-) -> MemberStates:
-    """Return the states as described with their errors, as `motion.numerical`, `Whole.states` and phases form them."""
-    up, slow = ups[:, None, :, None], (1.0 / clock)[:, None, None, None]
-    none = np.zeros_like(offsets)
-    tails = [np.stack([x, np.zeros_like(x)], axis=-1) for x in doubles]
-    z, w = tails[0] * up, tails[1] * up * slow
-    other, rate = pairs[0] * up, pairs[1] * up * slow
-    size = np.abs(slopes[..., 0]).swapaxes(1, 2)
-    q, v = spread_members(slopes, offsets, z)[..., 0], spread_members(slopes, none, w)[..., 0]
-    errors = [_apart(a, b, ups) @ size for a, b in ((z, other), (w, rate))]
-    return MemberStates(q, v, errors[0] + FLOOR * np.abs(q), errors[1] + FLOOR * np.abs(v), turns)
+def _scaled(tables: _Tables) -> tuple[Floats, Floats, Integers]:
+    """Return ascending times in the units of the tables, the last of each member, and where those asked for are."""
+    order = np.argsort(tables.times, axis=1, kind="stable")
+    scaled = np.take_along_axis(tables.times, order, axis=1) * (1.0 / tables.clock)[:, None]
+    return scaled, np.ascontiguousarray(scaled[:, -1]), np.argsort(order, axis=1, kind="stable")
 
 
-def _apart(first: Floats, second: Floats, ups: Floats) -> Floats:
-    """Return how far doubles are from pairs: `Numerical._apart`."""
-    up = ups[:, None]
+def _in_doubles(form: LaneForm, tables: _Tables) -> tuple[Run, Integers]:
+    """Return a run in doubles at the times of the tables, and the turns of directions, shape (members, t, d)."""
+    scaled, ends, back = _scaled(tables)
+    shape, count = (*scaled.shape, form.n), tables.seen.shape[1]
+    q, v, reached = np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(len(scaled), dtype=np.int64)
+    first, second, turns = np.zeros(shape), np.zeros(shape), np.zeros((*scaled.shape, count), dtype=np.int64)
+    follow_in_doubles(
+        form, tables.rows, ends, ORDER, TOLERANCE, scaled, tables.seen, first, second, turns, reached
+    )
+    at = back[:, :, None]
+    q[..., 0], v[..., 0] = np.take_along_axis(first, at, axis=1), np.take_along_axis(second, at, axis=1)
+    return (q, v, reached), np.take_along_axis(turns, at, axis=1)
+
+
+def _in_pairs(form: LaneForm, tables: _Tables, order: int, tolerance: float) -> Run:
+    """Return a run in pairs at the times of the tables."""
+    scaled, ends, back = _scaled(tables)
+    shape = (*scaled.shape, form.n, 2)
+    q, v, reached = np.zeros(shape), np.zeros(shape), np.zeros(len(scaled), dtype=np.int64)
+    follow_in_pairs(form, tables.rows, ends, order, tolerance, scaled, q, v, reached)
+    at = back[:, :, None, None]
+    return np.take_along_axis(q, at, axis=1), np.take_along_axis(v, at, axis=1), reached
+
+
+def _measured(tables: _Tables, run: Run, other: Run, share: float) -> _Reduced:
+    """Return the states of a run, and how far they are from another: `Numerical.by` and `Numerical.states`."""
+    up, slow = tables.ups[:, None, :, None], (1.0 / tables.clock)[:, None, None, None]
+    states = [(q * up, v * up * slow) for q, v, _ in (run, other)]
+    errors = [_apart(a, b, tables.ups[:, None], share) for a, b in zip(*states, strict=True)]
+    return _Reduced(*states[0], *errors, (run[2] & other[2]) == 1)
+
+
+def _apart(first: Floats, second: Floats, up: Floats, share: float) -> Floats:
+    """Return how far coordinates are from one another, with a share of the largest: `Numerical._apart`."""
     each = np.abs((first[..., 0] - second[..., 0]) + (first[..., 1] - second[..., 1]))
-    found: Floats = each + DOUBLES_SHARE * np.max(each / up, axis=2, initial=0.0, keepdims=True) * up
+    found: Floats = each + share * np.max(each / up, axis=2, initial=0.0, keepdims=True) * up
     return found
 
 
-def _parts(states: MemberStates) -> tuple[Floats, Floats, Floats, Floats, Integers]:
-    return states.q, states.v, states.q_error, states.v_error, states.turns
+def _states(tables: _Tables, reduced: _Reduced, turns: Integers) -> MemberStates:
+    """Return the states as described: `Whole.states`, and what phases know of them."""
+    slopes, offsets = tables.slopes, tables.offsets
+    size = np.abs(slopes[..., 0]).swapaxes(1, 2)
+    q = spread_members(slopes, offsets, reduced.q)[..., 0]
+    v = spread_members(slopes, np.zeros_like(offsets), reduced.v)[..., 0]
+    q_error, v_error = reduced.q_error @ size + FLOOR * np.abs(q), reduced.v_error @ size + FLOOR * np.abs(v)
+    return MemberStates(q, v, q_error, v_error, turns)
 
 
-def _at(states: MemberStates, part: slice) -> MemberStates:
-    return MemberStates(*(x[:, part] for x in _parts(states)))
+def _columns(
+    frames: Mapping[str, Frame],
+    tables: _Tables,
+    asked: int,
+    states: MemberStates,
+    coarse: MemberStates,
+    reached: Integers,
+) -> tuple[Followed, Integers]:
+    """Return the columns of members, and of which of them they are known.
+
+    Parameters
+    ----------
+    asked : int
+        How many of the times are those of the question.
+    coarse : MemberStates
+        Those that tell natural sizes.
+    """
+    between = slice(asked, asked + len(PLACES_BETWEEN))
+    values = tables.starts[..., 0]
+    columns = member_columns(frames, states.during(slice(0, asked)), values)
+    columns = with_natural_sizes(columns, member_columns(frames, coarse.during(between), values))
+    checked = member_columns(frames, states.during(slice(between.stop, None)), values)
+    scales = scales_of(columns)
+    known = reached & _countable(states, _directions(frames), values)
+    for column in (*columns.values(), *checked.values()):
+        finite = np.isfinite(column.values).reshape(len(values), -1).all(axis=1)
+        known = known & finite & np.isfinite(column.error)
+    error, rest = worst(columns, scales), (tables.windows, tables.written[..., 0], tables.states_alone)
+    return Followed(tables.members, columns, scales, error, checked, *rest), known
 
 
-def _countable(states: MemberStates, directions: Sequence[object], starts: Floats) -> Integers:
+def _countable(states: MemberStates, directions: Sequence[tuple[int, int]], starts: Floats) -> Integers:
     """Return of which members no direction is opposite to its start at any of the times."""
     found = np.ones(len(states.q), dtype=bool)
-    for d, frame in enumerate(directions):
-        i, j = frame.direction  # type: ignore[attr-defined]
+    for d, (i, j) in enumerate(directions):
         start = starts[:, d, None]
         principal = principal_angle(states.q[..., i], states.q[..., j], start[..., 0], start[..., 1])
         found &= (np.abs(principal) < np.pi - NOTHING_LEFT).all(axis=1)

@@ -1,4 +1,4 @@
-"""Answers to one question about many scenes that differ in numbers alone: their columns, to the bit as by themselves."""
+"""Answers to one question about many scenes that differ in numbers alone, to the bit as by themselves."""
 
 from __future__ import annotations
 

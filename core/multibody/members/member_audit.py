@@ -21,7 +21,7 @@ from core.multibody.audit.laws_at_samples import Sizes, check_samples, measured
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import LARGEST, Twist, moved
 from core.multibody.audit.samples import Part, Samples, samples_of
-from core.multibody.audit.windows import GRID, NODES, check_windows, nodes
+from core.multibody.audit.windows import GRID, check_windows, nodes
 from core.multibody.members.member_columns import MemberColumn
 from core.systems.trajectory import Column
 

@@ -35,6 +35,14 @@ class MemberStates:
     v_error: Floats
     turns: Integers
 
+    def during(self, times: slice) -> MemberStates:
+        """Return the states at some of the times."""
+        return MemberStates(*(x[:, times] for x in (self.q, self.v, self.q_error, self.v_error, self.turns)))
+
+    def of(self, members: Integers) -> MemberStates:
+        """Return the states of some members, by a mask."""
+        return MemberStates(*(x[members] for x in (self.q, self.v, self.q_error, self.v_error, self.turns)))
+
 
 @dataclass(frozen=True)
 class MemberColumn:

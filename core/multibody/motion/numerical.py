@@ -37,8 +37,11 @@ COLLIDED = 2.0**13
 """Inverse of a distance, in units of the scene, from which on a singular place is a collision: distances fall as the
 power 2/3 of the time that is left, to 1e-8 where steps are the shortest, and are of the order of one elsewhere."""
 
-DOUBLES_SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
+DOUBLES_SHARE, FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
+
+FINE_MARGIN, GROWTH = 4.0, 2.0**-50
+"""Factor of the difference of two runs in pairs, and share of the errors of doubles, which tell how rounding grows."""
 
 _CHUNK = 2**21
 """Bytes for the first steps of a run in pairs, twice those of as many in doubles; what is not used is not touched.
@@ -182,15 +185,14 @@ class Numerical(Motion):
         """Return the states, and how far they are from a run in pairs."""
         names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "reference")
         (q, v), (other, rate) = (self.by(kind, times) for kind in names)
-        share = DOUBLES_SHARE if names[0] == "doubles" else _FINE_SHARE
+        share = DOUBLES_SHARE if names[0] == "doubles" else FINE_SHARE
         q_error, v_error = (self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
         if self.lost_to_doubles:
             q_error, v_error = 16.0 * q_error, 16.0 * v_error
         elif finer:
-            # Both runs are in pairs: the doubles tell how rounding grows.
             coarse = self.states(times)
-            q_error = 4.0 * q_error + 2.0**-50 * coarse.q_error
-            v_error = 4.0 * v_error + 2.0**-50 * coarse.v_error
+            q_error = FINE_MARGIN * q_error + GROWTH * coarse.q_error
+            v_error = FINE_MARGIN * v_error + GROWTH * coarse.v_error
         return States(q, v, q_error, v_error, (other, rate))
 
     def _apart(self, first: Floats, second: Floats, share: float) -> Floats:
