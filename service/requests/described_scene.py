@@ -240,13 +240,17 @@ class SceneDescription(Request):
         """Return the unit of a number as it is written; see `Request.unit_of`."""
         return super().unit_of(path) or (unit_at(self.scene(), path) if path[0] in SCENE_FIELDS else None)
 
-    def scene(self) -> Scene:
-        """Return the scene, or raise `InvalidParameter`."""
+    def description(self) -> dict[str, Any]:
+        """Return the description of the scene, as it is written."""
         description = {name: getattr(self, name) for name in SCENE_FIELDS if name in self.model_fields_set}
         description["bodies"] = {
             name: {field: getattr(form, field) for field in form.model_fields_set} for name, form in self.bodies.items()
         }
-        return scene_from(description)
+        return description
+
+    def scene(self) -> Scene:
+        """Return the scene, or raise `InvalidParameter`."""
+        return scene_from(self.description())
 
 
 class DescribedSceneRequest(SceneDescription):

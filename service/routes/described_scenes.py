@@ -15,6 +15,7 @@ from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
 from service.routes.described_answer import UNDECIDED_PATH, DescribedAccuracy, DescribedSceneAnswer, SceneColumn
 from service.routes.equations_answer import equations_fields
+from service.routes.many_scenes import many_scenes
 from service.routes.motion_figures import draw_described
 from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PostRoute
@@ -170,6 +171,7 @@ DESCRIBED_SCENES = (
         warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, LOOP, BY_METHOD, SEARCHED, TURNING_SLIP, PIECES),
         description=DESCRIPTION,
         representations={SVG: draw_described},
+        many=many_scenes,
     ),
 )
 

@@ -17,6 +17,38 @@ from service.routing import PostRoute
 
 ROUTES = {route.path: route for route in questions() if route.many is not None}
 
+HANGING = {"kind": "pin", "a": "one.top", "b": [0, 0]}
+REQUESTS: dict[str, dict[str, Any]] = {
+    "/v1/rotation/precession": {
+        "body": {"kind": "principal-moments", "moments": [1.0, 1.5, 2.0]},
+        "angular_velocity": [0.1, 1.0, 0.2],
+    },
+    # Two rods, of which the angles have names.
+    "/v1/scenes": {
+        "gravity": [0, -9.81],
+        "let": {"a": 0.3, "b": 1.2, "spin": 0.5},
+        "bodies": {
+            "one": {
+                "mass": 1,
+                "inertia": 0.08,
+                "at": ["cos(a)/2", "sin(a)/2"],
+                "angle": "a",
+                "angular_velocity": "spin",
+                "places": {"top": [-0.5, 0], "end": [0.5, 0]},
+            },
+            "two": {
+                "mass": 1,
+                "inertia": 0.08,
+                "at": ["cos(a)+cos(b)/2", "sin(a)+sin(b)/2"],
+                "angle": "b",
+                "angular_velocity": 0,
+                "places": {"top": [-0.5, 0]},
+            },
+        },
+        "connections": [HANGING, {"kind": "pin", "a": "two.top", "b": "one.end"}],
+        "times": [0.0, 1.5, 0.75],
+    },
+}
 RANGES: dict[str, list[list[dict[str, Any]]]] = {
     "/v1/rotation/precession": [
         # Bodies of every kind: impossible, symmetric, and with two moments of 0.
@@ -27,7 +59,20 @@ RANGES: dict[str, list[list[dict[str, Any]]]] = {
             {"pointer": "/body/moments/0", "min": 1.0, "max": 2.0, "count": 15, "also": ["/angular_velocity/1"]},
             {"pointer": "/angular_velocity/0", "distribution": "normal", "mean": 0.0, "deviation": 1.0, "count": 15},
         ],
-    ]
+    ],
+    "/v1/scenes": [
+        # States at the start.
+        [
+            {"pointer": "/let/a", "min": -3.0, "max": 3.0, "count": 4},
+            {"pointer": "/let/b", "min": -3.0, "max": 3.0, "count": 3},
+            {"pointer": "/let/spin", "values": [0.0, 7.5]},
+        ],
+        # Other numbers, among them what cannot be: a body without mass, and angles that no double holds.
+        [
+            {"pointer": "/bodies/one/mass", "values": [0.0, 0.5, 2.0, -1.0, 1e-3]},
+            {"pointer": "/let/a", "values": [0.0, 1.0, 1e40]},
+        ],
+    ],
 }
 FIGURES = {
     "/v1/rotation/precession": [
@@ -35,7 +80,12 @@ FIGURES = {
         *(f"/{name}" for name in ("mean_precession_rate", "axis_to_angular_momentum", "tumbles", "axis/2")),
         *("/middle_axis_tilt/0", "/middle_axis_tilt/1", "/axis_to_angular_velocity", "/axis/0", "/axis/1"),
         "/angular_momentum_to_angular_velocity",
-    ]
+    ],
+    "/v1/scenes": [
+        *("/accuracy/error", "/trajectory/columns/two.angle/values/1", "/trajectory/columns/one.angle/error"),
+        *(f"/trajectory/columns/two.{name}/values/2/1" for name in ("position", "velocity")),
+        "/trajectory/columns/one.angular_velocity/values/1",
+    ],
 }
 CASES = [(path, k) for path, sets in RANGES.items() for k in range(len(sets))]
 
@@ -59,8 +109,7 @@ def named(labels: Any, names: tuple[str, ...]) -> list[str]:
 @pytest.mark.parametrize(("path", "k"), CASES)
 def test_many_have_the_bits_of_each_alone(path: str, k: int) -> None:
     route = ROUTES[path]
-    request = {"body": {"kind": "principal-moments", "moments": [1.0, 1.5, 2.0]}, "angular_velocity": [0.1, 1.0, 0.2]}
-    study = {"question": {"path": path, "request": request}, "vary": RANGES[path][k], "quantities": FIGURES[path]}
+    study = {"question": {"path": path, "request": REQUESTS[path]}, "vary": RANGES[path][k], "quantities": FIGURES[path]}
     many, alone = block(route, study), block(replace(route, many=None), study)
     assert many.inputs.tobytes() == alone.inputs.tobytes()
     for found in (many, alone):

@@ -37,51 +37,64 @@ class AnsweredTogether:
     rows: Integers
 
 
-def can_be_answered_together(scene: Scene, times: Floats) -> bool:
-    """Return whether members of a scene may be: smooth motions of one part, followed forwards from places as given."""
-    return (
-        scene.assemble is None
-        and not scene.one_sided
-        and not scene.switches
-        and len(times) > 0
-        and bool(times.min() >= 0.0)
-        and bool(times.max() > 0.0)
-        and len(independent_parts(scene)) == 1
-    )
+MOST_SAMPLES = 2**16
+"""Samples of members that are followed at a time, so that their arrays stay within some tens of megabytes."""
+
+ROWS_BESIDE = 32
+"""Samples of a member beside those of its question, for natural sizes and for the audit."""
 
 
-def answered_together(
-    scene: Scene,
-    places: Sequence[Path],
-    numbers: Floats,
-    times: Floats,
-    accuracy: float,
-    scene_of: Callable[[Sequence[float]], Scene],
-) -> list[AnsweredTogether]:
-    """Answer members of a scene; those that are left out are to be answered by themselves.
+class ManyScenes:
+    """Answers members of a scene, as many as can be answered together.
 
     Parameters
     ----------
     scene : Scene
         With `plan.Varied` in place of the numbers that vary.
     places : sequence of paths
-        Where these stand in the description.
-    numbers : ndarray, shape (members, k)
-    times : ndarray, shape (t,)
-        As `can_be_answered_together` requires them (s).
-    accuracy : float
-        Largest error of any column, relative to the largest value in columns of its unit, that is tolerated.
+        Where these stand.
     scene_of : callable
         From the numbers of a member to its scene, for the audit.
     """
-    with precision(BITS):
-        found = followed(Plans(scene, places), numbers, times, accuracy)
-    return [
-        AnsweredTogether(one.members[rows], one, rows)
-        for one in found
-        for rows in (_audited(one, numbers, scene_of),)
-        if len(rows)
-    ]
+
+    def __init__(self, scene: Scene, places: Sequence[Path], scene_of: Callable[[Sequence[float]], Scene]) -> None:
+        self.scene, self.scene_of = scene, scene_of
+        self._plans = Plans(scene, places)
+
+    def can_follow(self, times: Floats) -> bool:
+        """Return whether members may be answered together: smooth motions of one part, followed forwards as written."""
+        scene = self.scene
+        return (
+            scene.assemble is None
+            and not scene.one_sided
+            and not scene.switches
+            and 0 < len(times) <= MOST_SAMPLES
+            and bool(times.min() >= 0.0)
+            and bool(times.max() > 0.0)
+            and len(independent_parts(scene)) == 1
+        )
+
+    def answered(self, numbers: Floats, times: Floats, accuracy: float) -> Iterator[AnsweredTogether]:
+        """Yield members that are answered; those that are left out are to be answered by themselves.
+
+        Parameters
+        ----------
+        numbers : ndarray, shape (members, k)
+            What each has at the places.
+        times : ndarray, shape (t,)
+            As `can_follow` requires them (s).
+        accuracy : float
+            Largest error of any column, relative to the largest value in columns of its unit, that is tolerated.
+        """
+        count = max(TOGETHER, MOST_SAMPLES // (len(times) + ROWS_BESIDE))
+        for k in range(0, len(numbers), count):
+            some = numbers[k : k + count]
+            with precision(BITS):
+                found = followed(self._plans, some, times, accuracy)
+            for one in found:
+                rows = _audited(one, some, self.scene_of)
+                if len(rows):
+                    yield AnsweredTogether(one.members[rows] + k, one, rows)
 
 
 def _audited(found: Followed, numbers: Floats, scene_of: Callable[[Sequence[float]], Scene]) -> Integers:

@@ -100,9 +100,8 @@ def keep_the_laws(
     written : ndarray, shape (members, k)
         Places of bodies and angles as they are written.
     """
-    if not description.moderate:
-        return True
-    if any(one.mass or one.opens for one in description.connections):
+    if not description.moderate or any(one.mass or one.opens for one in description.connections):
+        # What needs forces, or is not audited at all, is answered by itself.
         return False
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         samples = samples_of(description, [_part(columns, windows)])

@@ -28,6 +28,9 @@ MOST_COORDINATES = 24
 MOST_RECORDS = 64
 """Set-ups that are recorded for one question: each costs some twenty times what its repetition does."""
 
+MOST_IN_VAIN = 4
+"""The same where none has led to a plan: the scene then is no motion in lanes."""
+
 
 class Varied:
     """Stands in a description for a number that members have each of their own; only numerals read it."""
@@ -144,7 +147,7 @@ class Plans:
         except MechanicsError:
             return None
         found = self._known(balls)
-        if found is None and self.records < MOST_RECORDS:
+        if found is None and self.records < (MOST_RECORDS if self.known else MOST_IN_VAIN):
             self.records += 1
             try:
                 self._record(balls)
