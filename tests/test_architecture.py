@@ -76,7 +76,7 @@ MULTIBODY_LAYERS = (
     {"phases"},
     {"parts"},
     {"proven"},
-    {"solve"},
+    {"solve", "members"},
 )
 """The packages and modules of core.multibody in layers, lowest first; each imports from itself or from a lower one."""
 
@@ -356,6 +356,11 @@ TESTED_IN |= {
             "table/spatial_orientation"
         ),
         "trajectory/test_columns": "trajectory/column_errors",
+        "members/test_follow": (
+            "members/lane_doubles members/lane_pairs members/lane_space members/lane_table members/many "
+            "members/member_columns members/plan"
+        ),
+        "members/test_recorded_balls": "algebra/square_systems",
         "language/test_scene": (
             "language/body language/connection language/contacts language/forces language/joints language/reading "
             "language/strings"

@@ -50,8 +50,8 @@ def many_scenes(request: Any, columns: Columns, figures: Sequence[Path]) -> Many
     found = np.full((len(numbers), len(figures)), np.nan)
     finite = np.flatnonzero(np.isfinite(numbers).all(axis=1))
     for some in question.many.answered(numbers[finite], question.times, question.accuracy):
-        values = [_figure(some, path) for path in figures]
-        if any(value is None for value in values):
+        values = [value for path in figures if (value := _figure(some, path)) is not None]
+        if len(values) < len(figures):
             # What the answer does not have, one by one tells why.
             return None
         answered[finite[some.members]] = True

@@ -109,7 +109,11 @@ def named(labels: Any, names: tuple[str, ...]) -> list[str]:
 @pytest.mark.parametrize(("path", "k"), CASES)
 def test_many_have_the_bits_of_each_alone(path: str, k: int) -> None:
     route = ROUTES[path]
-    study = {"question": {"path": path, "request": REQUESTS[path]}, "vary": RANGES[path][k], "quantities": FIGURES[path]}
+    study = {
+        "question": {"path": path, "request": REQUESTS[path]},
+        "vary": RANGES[path][k],
+        "quantities": FIGURES[path],
+    }
     many, alone = block(route, study), block(replace(route, many=None), study)
     assert many.inputs.tobytes() == alone.inputs.tobytes()
     for found in (many, alone):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from flint import arb_mat
 
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, entry, is_zero
-from core.multibody.algebra.square_systems import inverse, times_inverse
 from core.multibody.algebra.rank import independent
+from core.multibody.algebra.square_systems import inverse, times_inverse
 from core.multibody.equations.dynamics import weightless
 from core.multibody.equations.varying_lines import (
     add_onset,

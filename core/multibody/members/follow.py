@@ -131,8 +131,8 @@ def followed(plans: Plans, numbers: Floats, times: Floats, accuracy: float) -> l
         group.members.append(k)
         group.outputs.append(outputs)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = [_of_group(group, numbers[group.members], times, accuracy) for group in groups.values()]
-        return [one for group_found in found for one in group_found if len(one.members)]
+        every = [_of_group(group, numbers[group.members], times, accuracy) for group in groups.values()]
+    return [one for of_group in every for one in of_group if len(one.members)]
 
 
 @dataclass(frozen=True)
@@ -287,9 +287,7 @@ def _in_doubles(form: LaneForm, tables: _Tables) -> tuple[Run, Integers]:
     shape, count = (*scaled.shape, form.n), tables.seen.shape[1]
     q, v, reached = np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(len(scaled), dtype=np.int64)
     first, second, turns = np.zeros(shape), np.zeros(shape), np.zeros((*scaled.shape, count), dtype=np.int64)
-    follow_in_doubles(
-        form, tables.rows, ends, ORDER, TOLERANCE, scaled, tables.seen, first, second, turns, reached
-    )
+    follow_in_doubles(form, tables.rows, ends, ORDER, TOLERANCE, scaled, tables.seen, first, second, turns, reached)
     at = back[:, :, None]
     q[..., 0], v[..., 0] = np.take_along_axis(first, at, axis=1), np.take_along_axis(second, at, axis=1)
     return (q, v, reached), np.take_along_axis(turns, at, axis=1)
@@ -308,9 +306,9 @@ def _in_pairs(form: LaneForm, tables: _Tables, order: int, tolerance: float) -> 
 def _measured(tables: _Tables, run: Run, other: Run, share: float) -> _Reduced:
     """Return the states of a run, and how far they are from another: `Numerical.by` and `Numerical.states`."""
     up, slow = tables.ups[:, None, :, None], (1.0 / tables.clock)[:, None, None, None]
-    states = [(q * up, v * up * slow) for q, v, _ in (run, other)]
-    errors = [_apart(a, b, tables.ups[:, None], share) for a, b in zip(*states, strict=True)]
-    return _Reduced(*states[0], *errors, (run[2] & other[2]) == 1)
+    (q, v), (other_q, other_v) = ((q * up, v * up * slow) for q, v, _ in (run, other))
+    q_error, v_error = (_apart(a, b, tables.ups[:, None], share) for a, b in ((q, other_q), (v, other_v)))
+    return _Reduced(q, v, q_error, v_error, (run[2] & other[2]) == 1)
 
 
 def _apart(first: Floats, second: Floats, up: Floats, share: float) -> Floats:

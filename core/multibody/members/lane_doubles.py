@@ -100,9 +100,10 @@ def follow_in_doubles(
     space = lane_space(form, order, 1)
     member, fresh, last = np.full(WIDTH, -1), np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
     passed, begun = np.zeros(WIDTH, np.int64), np.zeros((2, WIDTH))
-    middle, count = np.zeros((n, WIDTH)), seen.shape[1]
+    begin, middle, count = space.path[0, 0], np.zeros((n, WIDTH)), seen.shape[1]
     # Of each direction, in each lane: its components at the last node, and its turns there.
     nodes, turned = np.zeros((2, count, 2, WIDTH)), np.zeros((2, count, WIDTH), np.int64)
+    path, sample = space.path[0], np.zeros((n, 1))
     following, going = 0, 0
     for lane in range(WIDTH):
         if following < numbers.shape[0]:
@@ -125,8 +126,8 @@ def follow_in_doubles(
         _half_way(form, space, middle)
         for lane in range(WIDTH):
             if member[lane] >= 0 and fresh[lane] == 0:
-                _turn(form, space.path[0, 0], seen[member[lane]], nodes[1], nodes[0], turned[1], turned[0], lane)
-                _turn(form, middle, seen[member[lane]], nodes[0], nodes[1], turned[0], turned[1], lane)
+                _turn(begin, seen, member[lane], lane, nodes, turned, 1, 0)
+                _turn(middle, seen, member[lane], lane, nodes, turned, 0, 1)
         _move(form, space)
         for lane in range(WIDTH):
             for i in range(n):
@@ -158,10 +159,12 @@ def follow_in_doubles(
                     if last[lane] == 0 and not times[own, s] < space.clock[0, lane]:
                         break
                     h = (times[own, s] - begun[0, lane]) - begun[1, lane]
-                    _sample(space.path[0], h, lane, q[own, s], v[own, s])
+                    _sample(path, h, lane, own, s, q, v)
                     late = 1 if h >= 0.5 * space.h[lane] else 0
+                    for i in range(n):
+                        sample[i, 0] = q[own, s, i]
                     for d in range(count):
-                        x, y = _seen(q[own, s], seen[own, d])
+                        x, y = _seen(sample, 0, seen, own, d, 0), _seen(sample, 0, seen, own, d, 1)
                         more = _passed(nodes[late, d, 0, lane], nodes[late, d, 1, lane], x, y)
                         turns[own, s, d] = turned[late, d, lane] + more
                     passed[lane] += 1
@@ -180,12 +183,14 @@ def follow_in_doubles(
 @kernel()
 def _half_way(form: LaneForm, space: LaneSpace, middle: Floats) -> None:
     """Fill in the places in the middle of the steps, shape (n, 8)."""
-    path = space.path[0]
-    for i in range(form.n):
-        by, total = lanes_at(space.h, 0) * alike(0.5), lanes_at(path[path.shape[0] - 1], WIDTH * i)
-        for k in range(path.shape[0] - 2, -1, -1):
-            total = fma(total, by, lanes_at(path[k], WIDTH * i))
-        put_lanes(middle, WIDTH * i, total)
+    path, of_path = space.path[0], WIDTH * form.n
+    last = of_path * (path.shape[0] - 1)
+    by = lanes_at(space.h, 0) * alike(0.5)
+    for i in range(0, of_path, WIDTH):
+        total = lanes_at(path, last + i)
+        for k in range(last - of_path, -1, -of_path):
+            total = fma(total, by, lanes_at(path, k + i))
+        put_lanes(middle, i, total)
 
 
 @kernel(forceinline=True)
@@ -200,61 +205,56 @@ def _passed(x: float, y: float, to_x: float, to_y: float) -> int:
 
 
 @kernel(forceinline=True)
-def _seen(place: Floats, seen: Floats) -> tuple[float, float]:
+def _seen(place: Floats, lane: int, seen: Floats, member: int, d: int, component: int) -> float:
+    """Return a component of a direction at a place of shape (n, lanes), relative to the direction's start."""
     n = place.shape[0]
-    x, y = seen[0, n], seen[1, n]
+    total: float = seen[member, d, component, n]
     for i in range(n):
-        x += seen[0, i] * place[i]
-        y += seen[1, i] * place[i]
-    return x, y
+        total += seen[member, d, component, i] * place[i, lane]
+    return total
 
 
 @kernel()
 def _turn(
-    form: LaneForm,
-    place: Floats,
-    seen: Floats,
-    nodes: Floats,
-    to_nodes: Floats,
-    turned: Integers,
-    to_turned: Integers,
-    lane: int,
+    place: Floats, seen: Floats, member: int, lane: int, nodes: Floats, turned: Integers, since: int, to: int
 ) -> None:
-    """Follow the directions of a lane from one node to a place, which becomes another node."""
-    for d in range(seen.shape[0]):
-        x, y = _seen(place[:, lane], seen[d])
-        to_turned[d, lane] = turned[d, lane] + _passed(nodes[d, 0, lane], nodes[d, 1, lane], x, y)
-        to_nodes[d, 0, lane], to_nodes[d, 1, lane] = x, y
+    """Follow the directions of a lane from one node to a place, which becomes the other node."""
+    for d in range(seen.shape[1]):
+        x, y = _seen(place, lane, seen, member, d, 0), _seen(place, lane, seen, member, d, 1)
+        more = _passed(nodes[since, d, 0, lane], nodes[since, d, 1, lane], x, y)
+        turned[to, d, lane] = turned[since, d, lane] + more
+        nodes[to, d, 0, lane], nodes[to, d, 1, lane] = x, y
 
 
 @kernel()
 def _move(form: LaneForm, space: LaneSpace) -> None:
     """Move the states of all lanes by their steps."""
-    path, q, v, h = space.path[0], space.q, space.v, lanes_at(space.h, 0)
-    for i in range(form.n):
-        at = WIDTH * i
+    path, h, of_path = space.path[0], lanes_at(space.h, 0), WIDTH * form.n
+    q, q_tail, v, v_tail = space.q[0], space.q[1], space.v[0], space.v[1]
+    for at in range(0, of_path, WIDTH):
         moved, rate = alike(0.0), alike(0.0)
         for k in range(path.shape[0] - 1, 2, -1):
-            own = lanes_at(path[k], at)
+            own = lanes_at(path, k * of_path + at)
             moved = (moved + own) * h
             rate = fma(own, alike(float(k)), rate) * h
-        second = lanes_at(path[2], at)
+        second = lanes_at(path, 2 * of_path + at)
         moved = ((moved + second) * h) * h
         # The largest terms, rate times step, are formed exactly; the rest is as much smaller as the step is short.
-        ph, pl = two_prod(lanes_at(v[0], at), h)
-        qh, ql = dd_add(lanes_at(q[0], at), lanes_at(q[1], at), ph, pl + moved + lanes_at(v[1], at) * h)
+        ph, pl = two_prod(lanes_at(v, at), h)
+        qh, ql = dd_add(lanes_at(q, at), lanes_at(q_tail, at), ph, pl + moved + lanes_at(v_tail, at) * h)
         ph, pl = two_prod(alike(2.0) * second, h)
-        vh, vl = dd_add(lanes_at(v[0], at), lanes_at(v[1], at), ph, pl + rate * h)
-        put_lanes(q[0], at, qh)
-        put_lanes(q[1], at, ql)
-        put_lanes(v[0], at, vh)
-        put_lanes(v[1], at, vl)
+        vh, vl = dd_add(lanes_at(v, at), lanes_at(v_tail, at), ph, pl + rate * h)
+        put_lanes(q, at, qh)
+        put_lanes(q_tail, at, ql)
+        put_lanes(v, at, vh)
+        put_lanes(v_tail, at, vl)
 
 
 @kernel()
 def add_corrections(form: LaneForm, space: LaneSpace, state: Floats, measures_only: bool) -> None:
     """Add to places, or to rates, what undoes the residuals."""
     n, m, columns, residual = form.n, form.m, space.columns[0], space.residual
+    of_tails = WIDTH * n
     size = n + m
     for i in range(n):
         total = alike(0.0)
@@ -262,9 +262,9 @@ def add_corrections(form: LaneForm, space: LaneSpace, state: Floats, measures_on
             if not measures_only or form.held[r] == 1:
                 rest = lanes_at(residual, 2 * WIDTH * r) + lanes_at(residual, 2 * WIDTH * r + WIDTH)
                 total = total + lanes_at(columns, WIDTH * ((n + r) * size + i)) * rest
-        sh, sl = dd_add_d(lanes_at(state[0], WIDTH * i), lanes_at(state[1], WIDTH * i), total)
-        put_lanes(state[0], WIDTH * i, sh)
-        put_lanes(state[1], WIDTH * i, sl)
+        sh, sl = dd_add_d(lanes_at(state, WIDTH * i), lanes_at(state, of_tails + WIDTH * i), total)
+        put_lanes(state, WIDTH * i, sh)
+        put_lanes(state, of_tails + WIDTH * i, sl)
 
 
 @kernel(forceinline=True)
@@ -279,7 +279,7 @@ def add_residual(residual: Floats, r: int, ah: float, al: float, bh: float, bl: 
 @kernel()
 def _correct(form: LaneForm, space: LaneSpace) -> None:
     """Put the places back on the measures, and the rates onto the rows there."""
-    x, q, v, residual = space.x, space.q, space.v, space.residual
+    x, q, v, residual, tail = space.x, space.q, space.v, space.residual, WIDTH * form.n
     for r in range(form.m):
         for plane in range(2):
             put_lanes(residual, WIDTH * (2 * r + plane), -lanes_at(x, WIDTH * (form.offset + 2 * r + plane)))
@@ -288,7 +288,7 @@ def _correct(form: LaneForm, space: LaneSpace) -> None:
         e, i = form.varying[p, 0], WIDTH * form.varying[p, 2]
         r, j = form.lines_at[e, 0], WIDTH * form.lines_at[e, 1]
         if form.held[r] == 1:
-            ph, pl = dd_mul(lanes_at(q[0], i), lanes_at(q[1], i), lanes_at(q[0], j), lanes_at(q[1], j))
+            ph, pl = dd_mul(lanes_at(q, i), lanes_at(q, tail + i), lanes_at(q, j), lanes_at(q, tail + j))
             at = WIDTH * (form.slopes + 2 * p)
             half = alike(0.5)
             add_residual(residual, r, half * lanes_at(x, at), half * lanes_at(x, at + WIDTH), ph, pl)
@@ -301,7 +301,7 @@ def _correct(form: LaneForm, space: LaneSpace) -> None:
     for p in range(form.varying.shape[0]):
         e, i = form.varying[p, 0], WIDTH * form.varying[p, 2]
         r, j = form.lines_at[e, 0], WIDTH * form.lines_at[e, 1]
-        ph, pl = dd_mul(lanes_at(q[0], i), lanes_at(q[1], i), lanes_at(v[0], j), lanes_at(v[1], j))
+        ph, pl = dd_mul(lanes_at(q, i), lanes_at(q, tail + i), lanes_at(v, j), lanes_at(v, tail + j))
         at = WIDTH * (form.slopes + 2 * p)
         add_residual(residual, r, lanes_at(x, at), lanes_at(x, at + WIDTH), ph, pl)
     add_corrections(form, space, v, False)
@@ -310,23 +310,21 @@ def _correct(form: LaneForm, space: LaneSpace) -> None:
 @kernel()
 def _add_lines(form: LaneForm, space: LaneSpace, state: Floats) -> None:
     """Subtract from the residuals what the constant entries of W give with places or rates."""
-    x = space.x
+    x, residual, tail = space.x, space.residual, WIDTH * form.n
     for e in range(form.lines_at.shape[0]):
         r, j = form.lines_at[e, 0], WIDTH * form.lines_at[e, 1]
-        at = WIDTH * (form.lines + 2 * e)
-        add_residual(
-            space.residual, r, lanes_at(x, at), lanes_at(x, at + WIDTH), lanes_at(state[0], j), lanes_at(state[1], j)
-        )
+        high, low = lanes_at(x, WIDTH * (form.lines + 2 * e)), lanes_at(x, WIDTH * (form.lines + 2 * e + 1))
+        add_residual(residual, r, high, low, lanes_at(state, j), lanes_at(state, tail + j))
 
 
 @kernel()
-def _sample(path: Floats, h: float, lane: int, q: Floats, v: Floats) -> None:
+def _sample(path: Floats, h: float, lane: int, member: int, s: int, q: Floats, v: Floats) -> None:
     """Evaluate the series of a lane, as `motion.series.sampled` does."""
-    for i in range(q.shape[0]):
+    for i in range(path.shape[1]):
         moved, rate = 0.0, 0.0
-        for k in range(path.shape[0] - 1, 0, -1):
-            moved = (moved + path[k, i, lane]) * h
         for k in range(path.shape[0] - 1, 1, -1):
+            moved = (moved + path[k, i, lane]) * h
             rate = (rate + k * path[k, i, lane]) * h
-        q[i] = path[0, i, lane] + moved
-        v[i] = path[1, i, lane] + rate
+        moved = (moved + path[1, i, lane]) * h
+        q[member, s, i] = path[0, i, lane] + moved
+        v[member, s, i] = path[1, i, lane] + rate

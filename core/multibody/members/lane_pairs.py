@@ -97,7 +97,7 @@ def follow_in_pairs(
                     if last[lane] == 0 and not times[own, s] < space.clock[0, lane]:
                         break
                     hh, hl = dd_add(times[own, s], 0.0, -begun[0, lane], -begun[1, lane])
-                    _sample(space.path, hh, hl, lane, q[own, s], v[own, s])
+                    _sample(space.path, hh, hl, lane, own, s, q, v)
                     passed[lane] += 1
                 if last[lane] == 0:
                     continue
@@ -114,14 +114,14 @@ def follow_in_pairs(
 @kernel()
 def _entries(form: LaneForm, space: LaneSpace) -> None:
     """Fill in the entries of W at the places."""
-    x, high, low, q = space.x, space.lines[0], space.lines[1], space.q
+    x, high, low, q, tail = space.x, space.lines[0], space.lines[1], space.q, WIDTH * form.n
     for e in range(high.shape[0]):
         at = WIDTH * (form.lines + 2 * e)
         put_lanes(high, WIDTH * e, lanes_at(x, at))
         put_lanes(low, WIDTH * e, lanes_at(x, at + WIDTH))
     for p in range(form.varying.shape[0]):
         e, i, at = WIDTH * form.varying[p, 0], WIDTH * form.varying[p, 2], WIDTH * (form.slopes + 2 * p)
-        ph, pl = dd_mul(lanes_at(x, at), lanes_at(x, at + WIDTH), lanes_at(q[0], i), lanes_at(q[1], i))
+        ph, pl = dd_mul(lanes_at(x, at), lanes_at(x, at + WIDTH), lanes_at(q, i), lanes_at(q, tail + i))
         sh, sl = dd_add(lanes_at(high, e), lanes_at(low, e), ph, pl)
         put_lanes(high, e, sh)
         put_lanes(low, e, sl)
@@ -130,11 +130,12 @@ def _entries(form: LaneForm, space: LaneSpace) -> None:
 @kernel()
 def _changes(form: LaneForm, space: LaneSpace, k: int) -> None:
     """Form coefficient k of the entries of W that vary."""
-    x, path, high, low = space.x, space.path, space.entries[0, k], space.entries[1, k]
+    x, path, path_tail, high, low = space.x, space.path[0], space.path[1], space.entries[0], space.entries[1]
+    of_path, of_entries = k * WIDTH * form.n, k * WIDTH * high.shape[1]
     for p in range(form.varying.shape[0]):
-        e, i, at = WIDTH * form.varying[p, 1], WIDTH * form.varying[p, 2], WIDTH * (form.slopes + 2 * p)
-        place, tail = lanes_at(path[0, k], i), lanes_at(path[1, k], i)
-        sh, sl = dd_mul(lanes_at(x, at), lanes_at(x, at + WIDTH), place, tail)
+        e, i = of_entries + WIDTH * form.varying[p, 1], of_path + WIDTH * form.varying[p, 2]
+        at = WIDTH * (form.slopes + 2 * p)
+        sh, sl = dd_mul(lanes_at(x, at), lanes_at(x, at + WIDTH), lanes_at(path, i), lanes_at(path_tail, i))
         if form.varying[p, 3] == 1:
             sh, sl = dd_add(lanes_at(high, e), lanes_at(low, e), sh, sl)
         put_lanes(high, e, sh)
@@ -142,11 +143,11 @@ def _changes(form: LaneForm, space: LaneSpace, k: int) -> None:
 
 
 @kernel(forceinline=True)
-def _add(right: Floats, row: int, ah: float, al: float, bh: float, bl: float) -> None:
+def _add(high: Floats, low: Floats, row: int, ah: float, al: float, bh: float, bl: float) -> None:
     """Add a product to a row of the right-hand side."""
-    sh, sl = gathered(lanes_at(right[0], row), lanes_at(right[1], row), ah, al, bh, bl)
-    put_lanes(right[0], row, sh)
-    put_lanes(right[1], row, sl)
+    sh, sl = gathered(lanes_at(high, row), lanes_at(low, row), ah, al, bh, bl)
+    put_lanes(high, row, sh)
+    put_lanes(low, row, sl)
 
 
 @kernel()
@@ -154,130 +155,125 @@ def _coefficients(form: LaneForm, space: LaneSpace, until: int) -> None:
     """Fill in the Taylor coefficients up to until + 1 in pairs, and the others in doubles."""
     n, m, x = form.n, form.m, space.x
     size = n + m
-    path, rates, pull, entries, right = space.path, space.rates, space.pull, space.entries, space.right
-    of_path, of_pull, of_entries = WIDTH * n, WIDTH * m, WIDTH * entries.shape[2]
-    last = path.shape[1] - 3
+    path, path_tail, rates, rates_tail = space.path[0], space.path[1], space.rates[0], space.rates[1]
+    pull, pull_tail, entries, entries_tail = space.pull[0], space.pull[1], space.entries[0], space.entries[1]
+    right, right_tail, columns, columns_tail = space.right[0], space.right[1], space.columns[0], space.columns[1]
+    of_path, of_pull, of_entries = WIDTH * n, WIDTH * m, WIDTH * entries.shape[1]
+    last = path.shape[0] - 3
     zero, one = alike(0.0), alike(1.0)
-    for k in range(2, path.shape[1]):
-        for i in range(n):
-            put_lanes(path[1, k], WIDTH * i, zero)
+    for i in range(2 * of_path, path.shape[0] * of_path, WIDTH):
+        put_lanes(path_tail, i, zero)
     for k in range(until):
         for i in range(size):
-            put_lanes(right[0], WIDTH * i, zero)
-            put_lanes(right[1], WIDTH * i, zero)
+            put_lanes(right, WIDTH * i, zero)
+            put_lanes(right_tail, WIDTH * i, zero)
         if k == 0:
             for i in range(n):
-                put_lanes(right[0], WIDTH * i, lanes_at(x, WIDTH * (form.load + 2 * i)))
-                put_lanes(right[1], WIDTH * i, lanes_at(x, WIDTH * (form.load + 2 * i + 1)))
+                put_lanes(right, WIDTH * i, lanes_at(x, WIDTH * (form.load + 2 * i)))
+                put_lanes(right_tail, WIDTH * i, lanes_at(x, WIDTH * (form.load + 2 * i + 1)))
         for p in range(form.stiff_at.shape[0]):
             i, j = WIDTH * form.stiff_at[p, 0], k * of_path + WIDTH * form.stiff_at[p, 1]
-            at = WIDTH * (form.stiff + 2 * p)
-            _add(right, i, -lanes_at(x, at), -lanes_at(x, at + WIDTH), lanes_at(path[0], j), lanes_at(path[1], j))
+            ah, al = lanes_at(x, WIDTH * (form.stiff + 2 * p)), lanes_at(x, WIDTH * (form.stiff + 2 * p + 1))
+            _add(right, right_tail, i, -ah, -al, lanes_at(path, j), lanes_at(path_tail, j))
         for p in range(form.damp_at.shape[0]):
             i, j = WIDTH * form.damp_at[p, 0], (k + 1) * of_path + WIDTH * form.damp_at[p, 1]
-            at = WIDTH * (form.damp + 2 * p)
-            ph, pl = dd_mul_d(lanes_at(path[0], j), lanes_at(path[1], j), alike(k + 1.0))
-            _add(right, i, -lanes_at(x, at), -lanes_at(x, at + WIDTH), ph, pl)
+            ah, al = lanes_at(x, WIDTH * (form.damp + 2 * p)), lanes_at(x, WIDTH * (form.damp + 2 * p + 1))
+            ph, pl = dd_mul_d(lanes_at(path, j), lanes_at(path_tail, j), alike(k + 1.0))
+            _add(right, right_tail, i, -ah, -al, ph, pl)
         for p in range(form.products.shape[0]):
             kind, row = form.products[p, 0], WIDTH * form.products[p, 1]
             a, b = WIDTH * form.products[p, 2], WIDTH * form.products[p, 3]
             if kind == OF_LINE:
                 sh, sl = zero, zero
                 for i in range(1, k + 1):
-                    of, by = a + of_pull * (i - 1), b + of_entries * (k - i + 1)
-                    sh, sl = gathered(
-                        sh,
-                        sl,
-                        lanes_at(pull[0], of),
-                        lanes_at(pull[1], of),
-                        lanes_at(entries[0], by),
-                        lanes_at(entries[1], by),
-                    )
-                _add(right, row, one, zero, sh, sl)
+                    c, d = a + of_pull * (i - 1), b + of_entries * (k - i + 1)
+                    first, first_tail = lanes_at(pull, c), lanes_at(pull_tail, c)
+                    sh, sl = gathered(sh, sl, first, first_tail, lanes_at(entries, d), lanes_at(entries_tail, d))
+                _add(right, right_tail, row, one, zero, sh, sl)
             elif kind == OF_RATE:
-                sh, sl = _sum(entries, rates, a + of_entries, b, of_entries, of_path, k)
-                _add(right, row, one, zero, sh, sl)
+                c = a + of_entries
+                sh, sl = _sum(entries, entries_tail, rates, rates_tail, c, b, of_entries, of_path, k)
+                _add(right, right_tail, row, one, zero, sh, sl)
             else:
-                sh, sl = _sum(path, rates, a, b, of_path, of_path, k)
+                sh, sl = _sum(path, path_tail, rates, rates_tail, a, b, of_path, of_path, k)
                 at = WIDTH * form.products[p, 4]
-                _add(right, row, lanes_at(x, at), lanes_at(x, at + WIDTH), sh, sl)
+                _add(right, right_tail, row, lanes_at(x, at), lanes_at(x, at + WIDTH), sh, sl)
         for i in range(size):
-            sh, sl = settled(lanes_at(right[0], WIDTH * i), lanes_at(right[1], WIDTH * i))
+            sh, sl = settled(lanes_at(right, WIDTH * i), lanes_at(right_tail, WIDTH * i))
             if i >= n:
                 sh, sl = dd_mul_d(sh, sl, alike(-(k + 1.0)))
-            put_lanes(right[0], WIDTH * i, sh)
-            put_lanes(right[1], WIDTH * i, sl)
+            put_lanes(right, WIDTH * i, sh)
+            put_lanes(right_tail, WIDTH * i, sl)
         first_h, first_l = alike(space.inverses[k + 1, 0]), alike(space.inverses[k + 1, 1])
         second_h, second_l = alike(space.inverses[k + 2, 0]), alike(space.inverses[k + 2, 1])
         for i in range(size):
             sh, sl = zero, zero
-            for j in range(size):
-                of = WIDTH * (j * size + i)
-                sh, sl = gathered(
-                    sh,
-                    sl,
-                    lanes_at(space.columns[0], of),
-                    lanes_at(space.columns[1], of),
-                    lanes_at(right[0], WIDTH * j),
-                    lanes_at(right[1], WIDTH * j),
-                )
+            for j in range(0, WIDTH * size, WIDTH):
+                c = j * size + WIDTH * i
+                column, column_tail = lanes_at(columns, c), lanes_at(columns_tail, c)
+                sh, sl = gathered(sh, sl, column, column_tail, lanes_at(right, j), lanes_at(right_tail, j))
             sh, sl = settled(sh, sl)
             if i < n:
                 uh, ul = dd_mul(sh, sl, first_h, first_l)
                 qh, ql = dd_mul(uh, ul, second_h, second_l)
-                put_lanes(rates[0], (k + 1) * of_path + WIDTH * i, uh)
-                put_lanes(rates[1], (k + 1) * of_path + WIDTH * i, ul)
-                put_lanes(path[0], (k + 2) * of_path + WIDTH * i, qh)
-                put_lanes(path[1], (k + 2) * of_path + WIDTH * i, ql)
+                c = (k + 1) * of_path + WIDTH * i
+                put_lanes(rates, c, uh)
+                put_lanes(rates_tail, c, ul)
+                put_lanes(path, c + of_path, qh)
+                put_lanes(path_tail, c + of_path, ql)
             else:
-                put_lanes(pull[0], k * of_pull + WIDTH * (i - n), sh)
-                put_lanes(pull[1], k * of_pull + WIDTH * (i - n), sl)
+                c = k * of_pull + WIDTH * (i - n)
+                put_lanes(pull, c, sh)
+                put_lanes(pull_tail, c, sl)
         if k < last:
             _changes(form, space, k + 2)
     lane_coefficients(form, space, until)
 
 
 @kernel(forceinline=True)
-def _sum(first: Floats, second: Floats, a: int, b: int, ahead: int, behind: int, k: int) -> tuple[float, float]:
+def _sum(
+    first: Floats,
+    first_tail: Floats,
+    second: Floats,
+    second_tail: Floats,
+    a: int,
+    b: int,
+    ahead: int,
+    behind: int,
+    k: int,
+) -> tuple[float, float]:
     """Return the sum of products of coefficients, those in the middle first, then the newest."""
     sh, sl = alike(0.0), alike(0.0)
-    for i in range(1, k):
-        sh, sl = _with(first, second, sh, sl, a + ahead * i, b + behind * (k - i))
-    sh, sl = _with(first, second, sh, sl, a, b + behind * k)
-    if k > 0:
-        sh, sl = _with(first, second, sh, sl, a + ahead * k, b)
+    for step in range(1, k + 2):
+        # Those of the newest coefficients, 0 and k, come last.
+        i = step if step < k else k * (step - k)
+        c, d = a + ahead * i, b + behind * (k - i)
+        left, left_tail = lanes_at(first, c), lanes_at(first_tail, c)
+        sh, sl = gathered(sh, sl, left, left_tail, lanes_at(second, d), lanes_at(second_tail, d))
     return sh, sl
-
-
-@kernel(forceinline=True)
-def _with(first: Floats, second: Floats, sh: float, sl: float, i: int, j: int) -> tuple[float, float]:
-    return gathered(
-        sh, sl, lanes_at(first[0], i), lanes_at(first[1], i), lanes_at(second[0], j), lanes_at(second[1], j)
-    )
 
 
 @kernel()
 def _move(form: LaneForm, space: LaneSpace) -> None:
     """Move the states of all lanes by their steps: `motion.series_pairs._moved`."""
-    high, low, by = space.path[0], space.path[1], lanes_at(space.h, 0)
-    order = high.shape[0] - 1
-    for i in range(form.n):
-        at = WIDTH * i
-        sh, sl = lanes_at(high[order], at), lanes_at(low[order], at)
+    high, low, by, of_path = space.path[0], space.path[1], lanes_at(space.h, 0), WIDTH * form.n
+    q, v, last = space.q, space.v, of_path * (high.shape[0] - 1)
+    for at in range(0, of_path, WIDTH):
+        sh, sl = lanes_at(high, last + at), lanes_at(low, last + at)
         rh, rl = alike(0.0), alike(0.0)
-        for k in range(order - 1, -1, -1):
+        for k in range(last - of_path, -of_path, -of_path):
             ph, pl = two_prod(rh, by)
             rh, e = two_sum(ph, sh)
             rl = fma(rl, by, pl + (e + sl))
             ph, pl = two_prod(sh, by)
-            sh, e = two_sum(ph, lanes_at(high[k], at))
-            sl = fma(sl, by, pl + (e + lanes_at(low[k], at)))
+            sh, e = two_sum(ph, lanes_at(high, k + at))
+            sl = fma(sl, by, pl + (e + lanes_at(low, k + at)))
         sh, sl = fast_two_sum(sh, sl)
         rh, rl = fast_two_sum(rh, rl)
-        put_lanes(space.q[0], at, sh)
-        put_lanes(space.q[1], at, sl)
-        put_lanes(space.v[0], at, rh)
-        put_lanes(space.v[1], at, rl)
+        put_lanes(q, at, sh)
+        put_lanes(q, of_path + at, sl)
+        put_lanes(v, at, rh)
+        put_lanes(v, of_path + at, rl)
 
 
 @kernel()
@@ -347,8 +343,8 @@ def _correct_inverse(size: int, space: LaneSpace) -> None:
             for i in range(size):
                 total = zero
                 for k in range(size):
-                    of = lanes_at(rest, WIDTH * (k * size + i))
-                    total = fma(of, lanes_at(whole, WIDTH * (j * size + k)), total)
+                    left = lanes_at(rest, WIDTH * (k * size + i))
+                    total = fma(left, lanes_at(whole, WIDTH * (j * size + k)), total)
                 if same:
                     put_lanes(low, WIDTH * (j * size + i), total)
                 else:
@@ -369,15 +365,15 @@ def _correct_inverse(size: int, space: LaneSpace) -> None:
 def _correct(form: LaneForm, space: LaneSpace) -> None:
     """Put the places back on the measures, and the rates onto the rows there."""
     x, q, v, lines, residual = space.x, space.q, space.v, space.lines, space.residual
-    half = alike(0.5)
+    half, tail, of_lines = alike(0.5), WIDTH * form.n, WIDTH * form.lines_at.shape[0]
     for r in range(form.m):
         for plane in range(2):
             put_lanes(residual, WIDTH * (2 * r + plane), -lanes_at(x, WIDTH * (form.offset + 2 * r + plane)))
     for e in range(form.lines_at.shape[0]):
         r, j, at = form.lines_at[e, 0], WIDTH * form.lines_at[e, 1], WIDTH * (form.lines + 2 * e)
-        high, low = lanes_at(lines[0], WIDTH * e), lanes_at(lines[1], WIDTH * e)
+        high, low = lanes_at(lines, WIDTH * e), lanes_at(lines, of_lines + WIDTH * e)
         sh, sl = dd_add(high, low, lanes_at(x, at), lanes_at(x, at + WIDTH))
-        add_residual(residual, r, half * sh, half * sl, lanes_at(q[0], j), lanes_at(q[1], j))
+        add_residual(residual, r, half * sh, half * sl, lanes_at(q, j), lanes_at(q, tail + j))
     add_corrections(form, space, q, True)
     _entries(form, space)
     for r in range(form.m):
@@ -385,16 +381,16 @@ def _correct(form: LaneForm, space: LaneSpace) -> None:
             put_lanes(residual, WIDTH * (2 * r + plane), lanes_at(x, WIDTH * (form.rate + 2 * r + plane)))
     for e in range(form.lines_at.shape[0]):
         r, j = form.lines_at[e, 0], WIDTH * form.lines_at[e, 1]
-        high, low = lanes_at(lines[0], WIDTH * e), lanes_at(lines[1], WIDTH * e)
-        add_residual(residual, r, high, low, lanes_at(v[0], j), lanes_at(v[1], j))
+        high, low = lanes_at(lines, WIDTH * e), lanes_at(lines, of_lines + WIDTH * e)
+        add_residual(residual, r, high, low, lanes_at(v, j), lanes_at(v, tail + j))
     add_corrections(form, space, v, False)
 
 
 @kernel()
-def _sample(path: Floats, hh: float, hl: float, lane: int, q: Floats, v: Floats) -> None:
+def _sample(path: Floats, hh: float, hl: float, lane: int, member: int, s: int, q: Floats, v: Floats) -> None:
     """Evaluate the series of a lane, as `motion.series_pairs.moved_pairs` does."""
     order = path.shape[1] - 1
-    for i in range(q.shape[0]):
+    for i in range(path.shape[2]):
         sh, sl = path[0, order, i, lane], path[1, order, i, lane]
         rh, rl = 0.0, 0.0
         for k in range(order - 1, -1, -1):
@@ -406,5 +402,5 @@ def _sample(path: Floats, hh: float, hl: float, lane: int, q: Floats, v: Floats)
             pl = fma(sl, hh, fma(sh, hl, pl + path[1, k, i, lane]))
             sh, e = two_sum(ph, path[0, k, i, lane])
             sl = pl + e
-        q[i, 0], q[i, 1] = fast_two_sum(sh, sl)
-        v[i, 0], v[i, 1] = fast_two_sum(rh, rl)
+        q[member, s, i, 0], q[member, s, i, 1] = fast_two_sum(sh, sl)
+        v[member, s, i, 0], v[member, s, i, 1] = fast_two_sum(rh, rl)

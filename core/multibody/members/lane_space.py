@@ -122,12 +122,13 @@ def lane_entries(form: LaneForm, space: LaneSpace) -> None:
 @kernel()
 def lane_changes(form: LaneForm, space: LaneSpace, k: int) -> None:
     """Form coefficient k of the entries of W that vary, in doubles."""
-    x, path, entries = space.x, space.path[0, k], space.entries[0, k]
+    x, path, entries = space.x, space.path[0], space.entries[0]
+    of_path, of_entries = k * WIDTH * form.n, k * WIDTH * entries.shape[1]
     for p in range(form.varying.shape[0]):
-        e = WIDTH * form.varying[p, 1]
+        e = of_entries + WIDTH * form.varying[p, 1]
         before = lanes_at(entries, e) if form.varying[p, 3] == 1 else alike(0.0)
         slope = lanes_at(x, WIDTH * (form.slopes + 2 * p))
-        put_lanes(entries, e, fma(slope, lanes_at(path, WIDTH * form.varying[p, 2]), before))
+        put_lanes(entries, e, fma(slope, lanes_at(path, of_path + WIDTH * form.varying[p, 2]), before))
 
 
 @kernel(forceinline=True)

@@ -76,11 +76,21 @@ def form_of(table: Packed) -> LaneForm:
                 products.append((OF_RATE, n + r, place[e], j, 0))
     turns = enumerate(table.gyre_at.tolist())
     products += [(OF_TURN, i, j, k, int(begins[4]) + 2 * g) for g, (i, j, k) in turns]
+    mass, load, stiff, damp, gyre, lines, slopes, offset, rate, q = begins.tolist()
     return LaneForm(
         n,
         m,
-        *begins.tolist(),
-        int(begins[-1]) + 2 * n,
+        mass,
+        load,
+        stiff,
+        damp,
+        gyre,
+        lines,
+        slopes,
+        offset,
+        rate,
+        q,
+        q + 2 * n,
         table.stiff_at,
         table.damp_at,
         table.lines_at,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -37,11 +38,14 @@ class MemberStates:
 
     def during(self, times: slice) -> MemberStates:
         """Return the states at some of the times."""
-        return MemberStates(*(x[:, times] for x in (self.q, self.v, self.q_error, self.v_error, self.turns)))
+        return self._with(lambda x: x[:, times])
 
     def of(self, members: Integers) -> MemberStates:
         """Return the states of some members, by a mask."""
-        return MemberStates(*(x[members] for x in (self.q, self.v, self.q_error, self.v_error, self.turns)))
+        return self._with(lambda x: x[members])
+
+    def _with(self, change: Callable[[Any], Any]) -> MemberStates:
+        return MemberStates(*map(change, (self.q, self.v, self.q_error, self.v_error, self.turns)))
 
 
 @dataclass(frozen=True)

@@ -205,7 +205,8 @@ def _setup_of(model: Modelled, numerals: Numerals, record: Record) -> Setup:
         raise NotRecorded("a large table")
     if list(whole.parts[0][0]) != list(range(len(table.names))):
         raise NotRecorded("coordinates in another order")
-    starts, written = [], []
+    starts: list[list[tuple[float, float]]] = []
+    written: list[tuple[float, float]] = []
     for name, frame in coordinates.frames.items():
         if frame.axes is not None:
             raise NotRecorded("attitudes in space")
@@ -221,7 +222,9 @@ def _setup_of(model: Modelled, numerals: Numerals, record: Record) -> Setup:
     return Setup(
         form_of(arrays),
         motion.units,
-        *(Template.of(x, record) for x in (numbers, slopes, offsets)),
+        Template.of(numbers, record),
+        Template.of(slopes, record),
+        Template.of(offsets, record),
         Template.of(np.array(starts, dtype=np.float64).reshape(-1, 3, 2), record),
         Template.of(np.array(written, dtype=np.float64), record),
         all(_is_of_state(path) for path, x in numerals.every.items() if isinstance(x, RecordedBall)),

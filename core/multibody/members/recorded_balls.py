@@ -220,8 +220,8 @@ class RecordedBall:
     __gt__, _ = _binary(">", lambda a, b: a > b)
     __le__, _ = _binary("<=", lambda a, b: a <= b)
     __ge__, _ = _binary(">=", lambda a, b: a >= b)
-    __eq__, _ = _binary("==", lambda a, b: a == b)  # type: ignore[assignment]
-    __ne__, _ = _binary("!=", lambda a, b: a != b)  # type: ignore[assignment]
+    __eq__, _ = _binary("==", lambda a, b: a == b)
+    __ne__, _ = _binary("!=", lambda a, b: a != b)
     __hash__ = None  # type: ignore[assignment]
 
     def __contains__(self, other: Any) -> bool:

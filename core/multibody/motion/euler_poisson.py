@@ -16,7 +16,7 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_add_d, dd_div_d, dd_mul_d
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.algebra.polynomials import Ball
-from core.multibody.equations.packed import packed, pair, units_of
+from core.multibody.equations.packed import pair, units_of
 from core.multibody.motion.numerical import CHECK_TOLERANCE, FINE_TOLERANCE, Numerical, Run, run_by
 from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, step_size
 from core.multibody.motion.series_pairs import moved_pairs
@@ -75,10 +75,9 @@ class EulerPoisson(Numerical):
             matrix = product_of(inverse, cross_matrix(body.arm))
             torque = np.array([[pair(x, 2 * time) for x in row] for row in matrix])
         start = [pair(x, time) for x in body.angular_velocity] + [pair(x, 0) for axis in body.axes for x in axis]
-        arrays = packed(table, range(len(table.rows)), units)
         return cls(
             table,
-            arrays,
+            range(len(table.rows)),
             units,
             name="Euler-Poisson",
             why="one rigid body turns about a point under its weight",

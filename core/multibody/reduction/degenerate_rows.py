@@ -23,6 +23,7 @@ from core.errors import InvalidParameter
 from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
+    Ball,
     LinearForm,
     Poly,
     combined,

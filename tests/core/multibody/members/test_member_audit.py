@@ -1,0 +1,76 @@
+"""The audit of many members at once finds what a member does wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.balls import precision
+from core.multibody.algebra.polynomials import BITS
+from core.multibody.audit.definitions import description_of
+from core.multibody.language.reading import scene_from
+from core.multibody.members.follow import Followed, followed
+from core.multibody.members.member_audit import keep_the_laws, windows_of
+from core.multibody.members.plan import Plans, Varied
+from tests.core.multibody.members.scenes import double_pendulum, with_numbers
+
+PLACES = (("let", "a"), ("let", "b"))
+NUMBERS = np.array([[0.5, 1.0], [0.6, 1.0], [0.7, 1.25]])
+
+
+@pytest.fixture(scope="module")
+def found() -> Followed:
+    scene = scene_from(with_numbers(double_pendulum(), PLACES, [Varied(), Varied()]))
+    with precision(BITS):
+        (only,) = followed(Plans(scene, PLACES), NUMBERS, np.array([2.0]), 1e-9)
+    return only
+
+
+def kept(found: Followed, changes: dict[str, float]) -> bool:
+    """Return whether the members keep the laws if the second one's columns are larger by shares of themselves."""
+    description = description_of(scene_from(with_numbers(double_pendulum(), PLACES, NUMBERS[0].tolist())))
+    columns = dict(found.checked)
+    for name, share in changes.items():
+        values = columns[name].values.copy()
+        values[1] *= 1.0 + share
+        columns[name] = replace(columns[name], values=values)
+    return keep_the_laws(description, columns, found.windows, found.written)
+
+
+def test_members_that_are_right_keep_the_laws(found: Followed) -> None:
+    assert len(found.members) == 3
+    assert kept(found, {})
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("one.position",),
+        ("two.angle",),
+        ("one.velocity",),
+        ("two.angular_velocity",),
+        # All rates alike: connections and kinematics apart, the energy is another.
+        ("one.velocity", "two.velocity", "one.angular_velocity", "two.angular_velocity"),
+    ],
+)
+def test_a_member_that_is_wrong_is_found(found: Followed, names: tuple[str, ...]) -> None:
+    assert not kept(found, dict.fromkeys(names, 1e-8))
+
+
+def test_a_member_that_begins_elsewhere_is_found(found: Followed) -> None:
+    description = description_of(scene_from(with_numbers(double_pendulum(), PLACES, NUMBERS[0].tolist())))
+    for k in range(found.written.shape[1]):
+        written = found.written.copy()
+        written[1, k] += 1e-9
+        assert not keep_the_laws(description, found.checked, found.windows, written)
+
+
+def test_windows_depend_on_the_member_alone() -> None:
+    one = windows_of(NUMBERS, np.array([0.25, 0.5, 0.25]), 10.0)
+    other = windows_of(NUMBERS[1:2], np.array([0.5]), 10.0)
+    assert one.times[1].tolist() == other.times[0].tolist()
+    assert (one.times >= 0.0).all()
+    assert (one.times <= 10.0).all()
+    assert len(set(one.times[:, 1].tolist())) == 3
