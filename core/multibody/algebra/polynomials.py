@@ -37,6 +37,16 @@ def recorded_among(numbers: Iterable[Any]) -> Any:
     return next((x for x in numbers if type(x) is not arb), None)
 
 
+def larger(first: Ball, second: Ball) -> Ball:
+    """Return the larger of two numbers, of which either may be recorded."""
+    return second.max(first) if type(first) is arb else first.max(second)
+
+
+def smaller(first: Ball, second: Ball) -> Ball:
+    """Return the smaller of two numbers, of which either may be recorded."""
+    return second.min(first) if type(first) is arb else first.min(second)
+
+
 def entry(numbers: Mapping[Any, Ball], key: Any) -> Ball:
     """Return a number of a sparse array, zero where it has none."""
     found = numbers.get(key)
@@ -155,7 +165,7 @@ def change_by(poly: Poly, at: Sequence[Ball], sizes: Sequence[Ball]) -> Ball:
     """
     if degree(poly) < 2:
         terms = size({key: value for key, value in poly.items() if key}, sizes)
-        found: Ball = terms + abs(poly[()]).min(terms) if () in poly else terms
+        found: Ball = terms + smaller(abs(poly[()]), terms) if () in poly else terms
         return found
     return sum((abs(evaluated(slope, at) * sizes[j]) for j, slope in gradient(poly).items()), ZERO)
 

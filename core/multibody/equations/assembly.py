@@ -8,7 +8,7 @@ from flint import arb, arb_mat
 
 from core.balls import as_text
 from core.errors import InvalidParameter, NotApplicable, Path, PlacesDisagree
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, change_by, evaluated, is_zero, size
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, change_by, evaluated, is_zero, larger, size
 from core.multibody.algebra.rank import Elimination, Line, independent
 from core.multibody.table.frames import Given
 from core.multibody.table.measures import CLOSE
@@ -68,7 +68,7 @@ def _extents(table: Table) -> list[Ball]:
     owners = [(name.rpartition(".")[0] or name, unit) for name, unit in zip(table.names, table.units, strict=True)]
     for owner, q in zip(owners, table.q, strict=True):
         before: Ball = largest.get(owner, ONE if owner[1] == "1" else ZERO)
-        largest[owner] = before.max(abs(q))
+        largest[owner] = larger(before, abs(q))
     return sizes(table, [largest[owner] for owner in owners])
 
 
@@ -159,7 +159,7 @@ def assemble_rates(
     # In balls: rates may be beyond the range of doubles.
     scale = ZERO
     for entry in given:
-        scale = scale.max(abs(entry.value))
+        scale = larger(scale, abs(entry.value))
     for entry in given:
         left = elimination.add(entry.line, entry.value)
         if left is None or is_zero(left):

@@ -80,7 +80,7 @@ class Template:
         """Return the arrays of members, from their outputs of shape (members, 2 o), one after another."""
         found = np.tile(self.values.ravel(), (len(outputs), 1))
         found[:, self.where] = np.ldexp(outputs[:, self.outputs], self.powers)
-        return found.reshape(-1, *self.values.shape)
+        return found.reshape(len(outputs), *self.values.shape)
 
 
 @dataclass(frozen=True)

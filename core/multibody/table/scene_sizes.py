@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.polynomials import ZERO, Ball, larger, smaller
 from core.multibody.table.table import Table
 
 FAR = 2.0**-20
@@ -28,12 +28,14 @@ def sizes(table: Table, of: Sequence[Ball]) -> list[Ball]:
     if not extents:
         return [abs(x) for x in of]
     span = max(extents, key=lambda x: float(x.mid()))
-    return [abs(x).min(span + FAR * abs(x)) if unit == "m" else abs(x) for x, unit in zip(of, table.units, strict=True)]
+    return [
+        smaller(abs(x), span + FAR * abs(x)) if unit == "m" else abs(x) for x, unit in zip(of, table.units, strict=True)
+    ]
 
 
 def _extent(values: Sequence[Ball]) -> Ball:
     least, largest = values[0], values[0]
     for value in values[1:]:
-        least, largest = least.min(value), largest.max(value)
+        least, largest = smaller(least, value), larger(largest, value)
     found: Ball = largest - least
     return found if found > 0 else ZERO

@@ -31,20 +31,16 @@ def double_pendulum() -> dict[str, Any]:
     }
 
 
-def masses_on_springs() -> dict[str, Any]:
-    """Two masses that a spring of some length joins, in space: no row, and lengths as coordinates."""
-    return {
-        "gravity": [0, 0, -9.81],
-        "bodies": {
-            "one": {"mass": 1, "at": [0.3, 0.1, -1.1]},
-            "two": {"mass": 2, "at": [0.2, -0.4, -2.3], "velocity": [0.1, 0.5, 0]},
-        },
-        "connections": [
-            {"kind": "spring", "a": "one", "b": [0, 0, 0], "stiffness": 90, "length": 1},
-            {"kind": "spring", "a": "two", "b": "one", "stiffness": 70, "length": 1},
-            {"kind": "damper", "a": "two", "b": "one", "damping": 0.3},
-        ],
-    }
+def damped_pendulum() -> dict[str, Any]:
+    """The same with a spring and a damper between the rods, and rates at the start."""
+    found = double_pendulum()
+    found["connections"] += [
+        {"kind": "torsion-spring", "a": "two", "b": "one", "stiffness": 3},
+        {"kind": "damper", "a": "two", "b": "one", "measure": "turn", "coefficient": 0.2},
+    ]
+    found["bodies"]["one"]["angular_velocity"] = 1.0
+    found["bodies"]["two"]["angular_velocity"] = -0.5
+    return found
 
 
 def with_numbers(description: Any, places: Places, numbers: Sequence[Any]) -> Any:

@@ -9,7 +9,7 @@ import pytest
 
 from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
-from tests.core.multibody.members.scenes import Places, double_pendulum, many, masses_on_springs, with_numbers
+from tests.core.multibody.members.scenes import Places, damped_pendulum, double_pendulum, many, with_numbers
 
 ANGLES: Places = (("let", "a"), ("let", "b"))
 CASES: dict[str, tuple[Any, Places, Any, float, float]] = {
@@ -22,10 +22,10 @@ CASES: dict[str, tuple[Any, Places, Any, float, float]] = {
         1.5,
         1e-9,
     ),
-    "springs": (
-        masses_on_springs(),
-        (("connections", 0, "stiffness"), ("bodies", "two", "velocity", 1)),
-        [[90.0, 0.5], [200.0, -0.7], [3e3, 2.0]],
+    "damped": (
+        damped_pendulum(),
+        (("connections", 2, "stiffness"), ("bodies", "two", "angular_velocity")),
+        [[3.0, -0.5], [20.0, 0.7], [0.3, 2.0]],
         2.0,
         1e-9,
     ),

@@ -32,7 +32,7 @@ def test_the_record_repeats_to_the_bit() -> None:
         record = Record(2)
         found = computed(*record.begun([arb("1.3"), arb("-0.7")]))
         record.complete = True
-        table = Template.of(np.array([[pair(x, 3), (1.0, 0.0)] for x in found]), record)
+        table = Template.of(np.array([[pair(x, 3), (1.0, 0.0)] for x in found], dtype=float), record)
         repeat = record.repeated()
         for numbers in (("1.3", "-0.7"), ("1.31", "-0.72")):
             balls = [arb(x) for x in numbers]
