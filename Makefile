@@ -199,7 +199,8 @@ SOAK ?= 300
 ATTACKS := tests/service/test_server.py tests/service/test_fuzz.py tests/service/http/test_raw_streams.py \
 	tests/service/test_slow_readers.py tests/service/http/test_limits.py tests/service/http/test_keys.py \
 	tests/service/http/test_compression.py tests/service/test_event_loop.py tests/service/test_nginx.py \
-	tests/service/http/test_dispatch.py tests/service/execution/test_admission.py \
+	tests/service/http/test_dispatch.py tests/service/http/test_held_bytes.py \
+	tests/service/execution/test_admission.py tests/service/execution/test_worker_pool.py \
 	tests/service/studies/test_cluster.py tests/service/studies/test_engine.py tests/service/studies/test_resources.py \
 	tests/clients/test_learning_platforms.py tests/clients/test_lti_bridge.py
 

@@ -104,8 +104,7 @@ class Settings(BaseSettings):
         default=30.0,
         gt=0,
         le=LONGEST,
-        description="Longest computation, not counting the turns of others in between, and longest wait for its first "
-        "turn; beyond, it is ended (503).",
+        description="Processor time that a computation may use; beyond, it is ended (503).",
     )
     max_waiting: int = Field(
         default=32,
@@ -122,7 +121,7 @@ class Settings(BaseSettings):
         default=256_000_000,
         ge=1,
         description="Memory of bodies that are arriving, of requests that are being answered and of answers that are "
-        "being read by their clients above which new large requests are refused (429).",
+        "being read by their clients above which new large requests are refused (429); one client may hold half.",
     )
     stalled_seconds: float = Field(
         default=20.0,

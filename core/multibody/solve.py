@@ -33,7 +33,7 @@ from core.multibody.trajectory.occurrences import (
     left_out,
     value_search,
 )
-from core.multibody.trajectory.scene_request import SceneRequest
+from core.multibody.trajectory.scene_request import SceneRequest, require_affordable
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty, check_value
 from core.systems.budget import Budget
@@ -113,6 +113,7 @@ def solve_scene(
         check_value("input_uncertainty", Uncertainty, input_uncertainty)
     empty = isinstance(times, Sized) and len(times) == 0
     moments = np.zeros(0) if empty else checked_times(times, budget)
+    require_affordable(len(moments), scene)
     if empty:
         check_without_times(method=method, round=digits)
         for output in outputs or ():

@@ -9,16 +9,17 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-from collections.abc import Awaitable, Callable, Hashable, Iterator
+from collections.abc import Awaitable, Callable, Hashable
 from dataclasses import dataclass
 from typing import Any
 
 from service.execution import PRELOAD
-from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, SliceUsed, Stopped, WorkerDied
+from service.execution.job import DeadlineExceeded, Job, NoProcess, SliceUsed, Stopped, WorkerDied
 from service.execution.lifeline import Lifeline
 from service.execution.messages import decoded, encoded
 from service.execution.worker import Failed, Task, serve, terms_of
 from service.execution.worker_pool import Processes
+from service.http.held_bytes import HeldBytes
 from service.http.keys import Key
 from service.http.limits import ClientGone
 from service.observability import traces
@@ -60,6 +61,8 @@ class Compute:
     size : int
         Processors that they take at most.
     processes : Processes
+    held : HeldBytes
+        Of requests until they are answered, of answers while they are read.
     """
 
     def __init__(self, settings: Settings, metrics: Metrics, table: str) -> None:
@@ -70,7 +73,7 @@ class Compute:
         self.processes = Processes(self.size, serve, (self.terms, COMPUTE_NICE), PRELOAD, self._lost, metrics.moved.inc)
         metrics.waiting.set_function(lambda: self.processes.waiting)
         metrics.long.set_function(lambda: self.processes.long)
-        self._held = 0
+        self.held = HeldBytes(settings.max_held_bytes)
         self._up = self._stopping = False
         self._lifeline: Lifeline | None = None
 
@@ -92,20 +95,6 @@ class Compute:
     def any_ready(self) -> bool:
         """Whether there are processes that work or wait for work."""
         return self.processes.any_ready
-
-    @property
-    def held(self) -> int:
-        """Memory of the answers that clients are reading (bytes)."""
-        return self._held
-
-    @contextlib.contextmanager
-    def holding(self, memory: int) -> Iterator[None]:
-        """Count memory (bytes): of a request until it is answered, of an answer while its client reads it."""
-        self._held += memory
-        try:
-            yield
-        finally:
-            self._held -= memory
 
     async def answer(
         self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender, *, later: bool = False
@@ -132,7 +121,7 @@ class Compute:
             raise _stopped()
         if not self._up:
             raise Refusal("not-ready", "the compute processes are not up yet", retry_after=1.0)
-        with self.holding(len(body)):
+        with self.held.holding(sender.client, len(body)):
             self._require_turn(sender)
             if later:
                 return await self._done(Task(route.path, body, npz, media, later=True), sender)
@@ -142,10 +131,7 @@ class Compute:
             return await self._done(Task(route.path, body, npz, media, len(route.in_short)), sender)
 
     def _require_turn(self, sender: Sender) -> None:
-        most = self._settings.max_held_bytes
-        if self._held > most:
-            detail = f"requests and unread answers take more than {most} bytes, the limit max_held_bytes"
-            raise Refusal("too-busy", detail, retry_after=1.0)
+        self.held.require_room(sender.client)
         waiting, limit = self.processes.waiting_of(sender.client), self._settings.max_waiting
         if len(waiting) >= limit:
             waited = waiting[0].waited
@@ -157,24 +143,22 @@ class Compute:
     async def _done(self, task: Task, sender: Sender, *, may_be_long: bool = True) -> Document:
         """Return what a process replies, or raise why it does not; time and key are settled however it ends."""
         deadline = self._settings.deadline_seconds
-        job = self.processes.submit(
-            encoded(task), sender.client, longest=deadline, patience=deadline, may_be_long=may_be_long
-        )
+        job = self.processes.submit(encoded(task), sender.client, longest=deadline, may_be_long=may_be_long)
         watch = asyncio.ensure_future(sender.gone())
-        try:
-            with traces.computing(task.path) as span:
+        with traces.computing(task.path) as span:
+            try:
                 await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
-                span.set_attribute("polhode.used_seconds", job.seconds)
-            if not job.reply.done():
-                raise ClientGone
-            result = self._result(job)
-        finally:
-            watch.cancel()
-            self.processes.drop(job)
-            if sender.key is not None:
-                sender.key.charge(job.seconds)
-            self._metrics.job_seconds.observe(job.seconds)
-            self._metrics.used_seconds.labels("" if sender.key is None else sender.key.name).inc(job.seconds)
+                if not job.reply.done():
+                    raise ClientGone
+            finally:
+                watch.cancel()
+                self.processes.drop(job)
+                span.set_attribute("polhode.used_seconds", job.used)
+                if sender.key is not None:
+                    sender.key.charge(job.used)
+                self._metrics.job_seconds.observe(job.used)
+                self._metrics.used_seconds.labels("" if sender.key is None else sender.key.name).inc(job.used)
+        result = self._result(job)
         if isinstance(result, Problem):
             raise Refusal.of(result)
         if isinstance(result, Failed):
@@ -187,17 +171,14 @@ class Compute:
         try:
             return decoded(job.reply.result())
         except DeadlineExceeded:
-            detail = f"the computation took longer than {limit:g} s, the limit deadline_seconds, and was stopped"
+            detail = f"the computation took more than {limit:g} s of processor time, the limit deadline_seconds"
             raise Refusal("deadline-exceeded", detail) from None
         except WorkerDied:
             detail = "the process that computed this answer died; other requests are not affected"
             raise Refusal("worker-lost", detail, retry_after=1.0) from None
-        except QueueTimeout:
-            detail = "no compute process became free for this request in time; it was not begun"
+        except NoProcess:
+            detail = "there is no compute process at present, and none came for this request in time"
             raise Refusal("not-ready", detail, retry_after=1.0) from None
-        except Crowded:
-            detail = f"{self.processes.long} long computations have begun already, as many as memory is meant for"
-            raise Refusal("too-busy", detail, retry_after=1.0) from None
         except Stopped:
             raise _stopped() from None
 

@@ -31,9 +31,9 @@ class FairQueue(Generic[T]):
         self._queues.setdefault(client, deque()).appendleft(entry)
         self._queues.move_to_end(client, last=False)
 
-    def pop(self, admitted: Callable[[Hashable], bool]) -> T | None:
-        """Take the entry whose turn it is among those of admitted clients; None if there is none."""
-        client = next(filter(admitted, self._queues), None)
+    def pop(self, admitted: Callable[[T], bool]) -> T | None:
+        """Take the first client's first entry that is admitted; None if no client's first entry is."""
+        client = next((client for client, queue in self._queues.items() if admitted(queue[0])), None)
         if client is None:
             return None
         queue = self._queues[client]

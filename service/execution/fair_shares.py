@@ -11,6 +11,13 @@ QUANTUM = 0.1
 microseconds, and the refilling of its cache), short against what somebody notices."""
 
 
+MOST_OF_A_CLIENT = 4
+"""Computations of one client that take part: its next one waits until one of them ends."""
+
+MOST = 32
+"""Computations of all clients together: each holds the memory of its process."""
+
+
 class Shared(Protocol):
     """What takes part."""
 
@@ -49,9 +56,15 @@ class FairShares(Generic[T]):
     def __iter__(self) -> Iterator[T]:
         return iter(self._charged)
 
-    def count(self, client: Hashable) -> int:
-        """Return how many of a client's take part."""
-        return sum(entry.client == client for entry in self._charged)
+    @property
+    def full(self) -> bool:
+        """Whether there is room for no other."""
+        return len(self._charged) >= MOST
+
+    def may_have_another(self, client: Hashable) -> bool:
+        """Return whether there is room for another one of a client, half of which is kept for clients with none."""
+        own = sum(entry.client == client for entry in self._charged)
+        return own == 0 or (own < MOST_OF_A_CLIENT and len(self._charged) < MOST // 2)
 
     def add(self, entry: T) -> None:
         """Have a computation take part; its time until now is charged."""

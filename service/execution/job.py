@@ -21,12 +21,8 @@ class SliceUsed(Exception):
     """The request, which is not to become long, used its slice; its process was killed."""
 
 
-class QueueTimeout(Exception):
-    """No process became free for the request in time."""
-
-
-class Crowded(Exception):
-    """So many long computations have begun that there was no room for one more."""
+class NoProcess(Exception):
+    """There was no process for the request, and none came in time."""
 
 
 class Stopped(Exception):
@@ -41,13 +37,17 @@ class Job:
     client : hashable
         Who sent it; clients have their turns in rotation.
     longest : float
-        How long it may run (s).
+        Processor time that it may use (s).
     may_be_long : bool
         Whether it goes on in the long class when it has used its slice, or is ended.
     reply : asyncio.Future of memoryview
-        Fails with `WorkerDied`, `DeadlineExceeded`, `SliceUsed`, `QueueTimeout`, `Crowded` or `Stopped`.
+        Fails with `WorkerDied`, `DeadlineExceeded`, `SliceUsed`, `NoProcess` or `Stopped`.
     begun : bool
         Whether a process works on it, or has.
+    is_long : bool
+        Whether it has used its slice.
+    used : float
+        Processor time that it has used, once no process works on it any more (s).
     """
 
     def __init__(
@@ -56,7 +56,8 @@ class Job:
         self.request, self.client, self.longest, self.may_be_long = request, client, longest, may_be_long
         self.reply: asyncio.Future[memoryview] = asyncio.get_running_loop().create_future()
         self.submitted = perf_counter()
-        self.begun = False
+        self.begun = self.is_long = False
+        self.used = 0.0
         self.timer: asyncio.TimerHandle | None = None
         self._ran, self._since = 0.0, 0.0
 
@@ -80,7 +81,7 @@ class Job:
 
     def forget(self) -> None:
         """Note that none ever did."""
-        self._ran, self._since = 0.0, 0.0
+        self._ran, self._since, self.used, self.begun = 0.0, 0.0, 0.0, False
 
     def fail(self, error: Exception) -> None:
         """Answer with an error, unless there is an answer or the client has left."""

@@ -20,7 +20,7 @@ from typing import Any
 
 from service.execution.fair_queue import FairQueue
 from service.execution.fair_shares import QUANTUM, FairShares
-from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, SliceUsed, Stopped, WorkerDied
+from service.execution.job import DeadlineExceeded, Job, NoProcess, SliceUsed, Stopped, WorkerDied
 from service.execution.messages import Buffer
 from service.execution.process_starter import ProcessStarter
 from service.execution.worker_process import Process
@@ -32,17 +32,8 @@ BEGIN_SECONDS = 5.0
 SLICE = 0.02
 """Seconds of processor time in the short class: most small scenes are answered in less."""
 
-SLICES_OF_TIME = 10.0
-"""So many slices of time after which a request is long though it has not used its slice: it waits for something."""
-
 RESERVE = 1
 """Processes beside one for each processor that are ready to take the place of one whose request turns out long."""
-
-MOST_LONG_OF_A_CLIENT = 4
-"""Long requests of one client that have begun: its next request is not begun before one of them ends."""
-
-MOST_LONG = 32
-"""Long requests of all clients together, divided among them: each holds the memory of its process."""
 
 
 class Processes:
@@ -136,7 +127,6 @@ class Processes:
         client: Hashable,
         *,
         longest: float,
-        patience: float,
         may_be_long: bool = True,
     ) -> Job:
         """Have a request answered.
@@ -147,9 +137,7 @@ class Processes:
             As `messages.encoded` returns it.
         client : hashable
         longest : float
-            Time for which it may run; its process is then killed (s).
-        patience : float
-            Time that it may wait for its turn (s).
+            Processor time that it may use; its process is then killed (s).
         may_be_long : bool
             Whether it is moved to the long class when it has used its slice; otherwise its process is then killed.
         """
@@ -157,7 +145,7 @@ class Processes:
         if self._stopping:
             job.fail(Stopped())
             return job
-        self._time(job, patience, self._give_up, QueueTimeout())
+        self._time(job, longest, self._unserved)
         self._waiting.append(client, job)
         self._hand_out()
         return job
@@ -185,7 +173,7 @@ class Processes:
             return
         elif message is None:
             job.begun = True
-            self._time(job, job.longest, self._give_up, DeadlineExceeded())
+            self._time(job, job.longest, self._overdue)
             if isfinite(self._slice):
                 asyncio.get_running_loop().call_later(self._slice, self._sliced, job)
             return
@@ -252,10 +240,9 @@ class Processes:
             process.give(job)
         self._share()
 
-    def _may_begin(self, client: Hashable) -> bool:
-        """Return whether one more of a client's requests would find room if it turned out long."""
-        clients = {job.client for job in (*self._long, *self._short)} | {client}
-        return self._long.count(client) < min(MOST_LONG_OF_A_CLIENT, max(1, MOST_LONG // len(clients)))
+    def _may_begin(self, job: Job) -> bool:
+        """Return whether a request may begin, which may turn out long."""
+        return not self._long.full if job.is_long else self._long.may_have_another(job.client)
 
     def _share(self) -> None:
         """Stop and continue the processes of the long class, so that no more run than there are processors."""
@@ -277,7 +264,7 @@ class Processes:
             if working[job].stopped:
                 working[job].go_on()
                 job.run()
-                self._time(job, job.longest - job.seconds, self._give_up, DeadlineExceeded())
+                self._time(job, job.longest - working[job].used, self._overdue)
         if len(chosen) < len(self._long):
             self._turns = asyncio.get_running_loop().call_later(QUANTUM, self._share)
 
@@ -286,40 +273,60 @@ class Processes:
         process = self.process_of(job)
         if process is None or job not in self._short:
             return
-        left = self._slice - process.used
-        if left > 0.0 and job.seconds < SLICES_OF_TIME * self._slice:
+        left = process.left_of(self._slice)
+        if left > 0.0:
             asyncio.get_running_loop().call_later(max(left, 0.1 * self._slice), self._sliced, job)
-            return
-        if not job.may_be_long:
+        elif not job.may_be_long:
             self._give_up(job, SliceUsed())
-            return
-        # Some may have begun before others came to divide the room with.
-        if len(self._long) >= MOST_LONG + self.size:
-            self._give_up(job, Crowded())
-            return
-        self._short.discard(job)
-        self._long.add(job)
-        self._moved()
-        self._keep_up()
-        self._hand_out()
+        elif self._long.full:
+            # It begins again when there is room, rather than being refused for the requests of others.
+            job.is_long = True
+            self._take_back(job)
+        else:
+            job.is_long = True
+            self._short.discard(job)
+            self._long.add(job)
+            self._moved()
+            self._keep_up()
+            self._hand_out()
 
-    def _time(self, job: Job, seconds: float, late: Callable[..., None], *arguments: Any) -> None:
+    def _overdue(self, job: Job) -> None:
+        """End a request that has used its time."""
+        process = self.process_of(job)
+        left = 0.0 if process is None else process.left_of(job.longest)
+        if left > 0.0:
+            self._time(job, left, self._overdue)
+        else:
+            self._give_up(job, DeadlineExceeded())
+
+    def _unserved(self, job: Job) -> None:
+        """End a request that waits where there is no process; nobody is refused for the requests of others."""
+        if self.any_ready:
+            self._time(job, job.longest, self._unserved)
+        else:
+            self._give_up(job, NoProcess())
+
+    def _time(self, job: Job, seconds: float, late: Callable[[Job], None]) -> None:
         if job.timer is not None:
             job.timer.cancel()
-        job.timer = asyncio.get_running_loop().call_later(seconds, late, job, *arguments)
+        job.timer = asyncio.get_running_loop().call_later(seconds, late, job)
 
     def _not_begun(self, job: Job) -> None:
-        """Take a request from a process that does nothing, which is killed and replaced."""
+        """Take a request from a process that does nothing."""
+        LOG.error("a compute process did not begin a request")
+        self._take_back(job)
+
+    def _take_back(self, job: Job) -> None:
+        """Have a request begun anew by another process; its own is killed and replaced."""
         process = self._detach(job)
         if process is not None:
-            LOG.error("a compute process did not begin a request", extra={"pid": process.handle.pid})
             process.kill()
-            self._put_back(job)
+        self._put_back(job)
 
     def _put_back(self, job: Job) -> None:
         if not job.reply.done():
             job.forget()
-            self._time(job, job.longest, self._give_up, QueueTimeout())
+            self._time(job, job.longest, self._unserved)
             self._waiting.put_back(job.client, job)
             self._hand_out()
 
@@ -332,6 +339,7 @@ class Processes:
             job.timer.cancel()
         process = self.process_of(job)
         if process is not None:
+            job.used = process.used
             process.job = None
         return process
 

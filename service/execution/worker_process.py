@@ -8,12 +8,17 @@ import os
 import signal
 import time
 from multiprocessing.context import ForkServerProcess
+from pathlib import Path
 from typing import Protocol, cast
 
 import numpy as np
 
 from service.execution.job import Job
 from service.execution.messages import LENGTH
+
+WAITS = 10.0
+"""A process that waits for something, after so many times as long as it may use the processor, counts as one that has
+used it. One that waits for a core alone, beside other programs that take all of them, does not."""
 
 
 class Listener(Protocol):
@@ -49,7 +54,8 @@ class Process(asyncio.BufferedProtocol):
         """Send a request."""
         assert self._transport is not None
         self.job = job
-        self._used_before = self._processor_seconds()
+        with contextlib.suppress(OSError):
+            self._used_before = self._processor_seconds()
         self._transport.writelines(job.request)
 
     def get_buffer(self, sizehint: int) -> memoryview:
@@ -77,15 +83,28 @@ class Process(asyncio.BufferedProtocol):
     @property
     def used(self) -> float:
         """Processor time since it was given its last request (s)."""
-        return self._processor_seconds() - self._used_before
+        try:
+            return self._processor_seconds() - self._used_before
+        except OSError:
+            # It has ended, or the system has no such clocks: the time for which it has run.
+            return 0.0 if self.job is None else self.job.seconds
+
+    def left_of(self, most: float) -> float:
+        """Return what is left of the processor time that its request may use (s), nothing if it waits for something."""
+        if self.job is None or (self.job.seconds >= WAITS * most and not self._runnable):
+            return 0.0
+        return most - self.used
+
+    @property
+    def _runnable(self) -> bool:
+        with contextlib.suppress(OSError):
+            # proc_pid_stat(5): the state comes after the name, which may have blanks and brackets.
+            return Path(f"/proc/{self.handle.pid}/stat").read_bytes().rpartition(b")")[2].split()[0] == b"R"
+        return False
 
     def _processor_seconds(self) -> float:
         # The clock of another process (clock_getcpuclockid(3)), which Python has for threads alone.
-        try:
-            return time.clock_gettime(~(self.handle.pid or 0) << 3 | 2)
-        except OSError:
-            # It has ended, or the system has no such clocks.
-            return 0.0
+        return time.clock_gettime(~(self.handle.pid or 0) << 3 | 2)
 
     def stop(self) -> None:
         """Have it do nothing until it is continued; what it has done is kept."""

@@ -84,9 +84,7 @@ class Dispatcher:
         self._cache = ResponseCache(settings.cached_answers)
         self._records = Records(metrics, settings.log_requests)
         self._failed = FailedChecks(settings.failed_requests, metrics)
-        self.bodies = Bodies(
-            settings.max_body_bytes, settings.max_held_bytes, settings.body_seconds, lambda: compute.held
-        )
+        self.bodies = Bodies(settings.max_body_bytes, compute.held, settings.body_seconds)
         handlers: dict[tuple[str, str], ASGIApp] = {}
         for route in routes:
             handler: ASGIApp = partial(self._serve, route)
@@ -149,7 +147,7 @@ class Dispatcher:
         if accept != b"*/*" and accept != b"application/json":
             media = negotiated(accept, ("application/json", *route.representations, archive.MEDIA_TYPE))
             media = None if media == "application/json" else media
-        body = await self.bodies.read(context.receive, headers)
+        body = await self.bodies.read(context.receive, headers, context.client)
         if route.path in self._later and media is None and not npz and _preferred(headers):
             await self._question_later(route, context, body)
             return
@@ -193,7 +191,7 @@ class Dispatcher:
         if require_readable(context.headers):
             raise Refusal("unsupported-media-type", "the request of a study is JSON: Content-Type: application/json")
         negotiated(context.headers.get(b"accept", b"*/*"), ("application/json",))
-        body = await self.bodies.read(context.receive, context.headers)
+        body = await self.bodies.read(context.receive, context.headers, context.client)
         sender = Sender(context.client, context.key, context.gone)
         plan = await self._executor.answer(route, body, False, None, sender)
         assert self._submit is not None
@@ -203,7 +201,7 @@ class Dispatcher:
         self, document: Document, etag: bytes, context: RequestContext, headers: Sequence[Header] = (JSON,)
     ) -> None:
         self._metrics.samples.inc(document.numbers)
-        with self._compute.holding(document.memory):
+        with self._compute.held.holding(context.client, document.memory):
             await context.stream(document.pieces(), etag, self._settings.stalled_seconds, headers, self._turns)
 
     async def _page(self, route: GetRoute, context: RequestContext) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import re
-from collections.abc import Awaitable, Callable, Iterable, Mapping, MutableMapping, Sequence
+from collections.abc import Awaitable, Callable, Hashable, Iterable, Mapping, MutableMapping, Sequence
 from time import monotonic
 from typing import Any
 from urllib.parse import parse_qs
 
 from starlette.types import Scope
 
+from service.http.held_bytes import HeldBytes
 from service.problems import MOST_FAULTS, Fault, Refusal, headline
 
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -113,23 +114,20 @@ class Bodies:
     ----------
     limit : int
         Bytes of one body.
-    held_limit : int
-        Bytes of all unfinished bodies, and of what `others` counts, above which no more is read.
+    held : HeldBytes
+        With unfinished bodies, of which no more is read where there is no room.
     seconds : float
         Time in which a body must have arrived; enforced while `watch` runs.
-    others : callable
-        Returns how many bytes are held otherwise.
     """
 
-    def __init__(self, limit: int, held_limit: int, seconds: float, others: Callable[[], int] = lambda: 0) -> None:
-        self._limit, self._held_limit, self._seconds, self._others = limit, held_limit, seconds, others
+    def __init__(self, limit: int, held: HeldBytes, seconds: float) -> None:
+        self._limit, self._held, self._seconds = limit, held, seconds
         # One look at all of them now and then costs less than a timer for each.
         self._since: dict[asyncio.Task[Any] | None, float] = {}
         self._late: set[asyncio.Task[Any] | None] = set()
-        self.held = 0
 
-    async def read(self, receive: Receive, headers: Headers) -> bytes:
-        """Return a request's body.
+    async def read(self, receive: Receive, headers: Headers, client: Hashable) -> bytes:
+        """Return the body of a client's request.
 
         Raises
         ------
@@ -152,7 +150,7 @@ class Bodies:
             body: bytes = message.get("body", b"")
             if message["type"] == "http.request" and not message.get("more_body") and len(body) <= self._limit:
                 return body
-            return await self._rest(message, receive)
+            return await self._rest(message, receive, client)
         except asyncio.CancelledError:
             if task is None or task not in self._late:
                 raise
@@ -173,7 +171,7 @@ class Bodies:
                     self._late.add(task)
                     task.cancel()
 
-    async def _rest(self, message: MutableMapping[str, Any], receive: Receive) -> bytes:
+    async def _rest(self, message: MutableMapping[str, Any], receive: Receive, client: Hashable) -> bytes:
         parts: list[bytes] = []
         size = 0
         try:
@@ -182,20 +180,18 @@ class Bodies:
                     raise ClientGone
                 parts.append(message.get("body", b""))
                 size += len(parts[-1])
-                self.held += len(parts[-1])
+                self._held.add(client, len(parts[-1]))
                 if size > self._limit:
                     parts.clear()
                     if message.get("more_body"):
                         await _drop(receive, 4 * self._limit - size)
                     raise self._too_large()
-                if self.held + self._others() > self._held_limit:
-                    detail = f"requests and answers take more than {self._held_limit} bytes, the limit max_held_bytes"
-                    raise Refusal("too-busy", detail, headers=(_CLOSE,), retry_after=1.0)
+                self._held.require_room(client, close=True)
                 if not message.get("more_body"):
                     return b"".join(parts)
                 message = await receive()
         finally:
-            self.held -= size
+            self._held.add(client, -size)
 
     def _too_large(self) -> Refusal:
         detail = f"the body has more than {self._limit} bytes, the limit max_body_bytes"

@@ -40,7 +40,10 @@ class Metrics:
         )  # fmt: skip
         self.samples = Counter("polhode_samples", "Numbers in arrays of large answers.", registry=registry)
         self.job_seconds = Histogram(
-            "polhode_job_seconds", "Time of questions in compute processes.", buckets=_SECONDS, registry=registry
+            "polhode_job_seconds",
+            "Processor time of questions in compute processes.",
+            buckets=_SECONDS,
+            registry=registry,
         )
         self.long_inline = Counter(
             "polhode_long_inline", "Requests that held the event loop for more than 20 ms.", ("operation",),
@@ -56,7 +59,10 @@ class Metrics:
             "polhode_moved", "Questions that used up their slice and were moved to the long class.", registry=registry
         )
         self.used_seconds = Counter(
-            "polhode_used_seconds", "Time of compute processes, by the name of the key.", ("key",), registry=registry
+            "polhode_used_seconds",
+            "Processor time of compute processes, by the name of the key.",
+            ("key",),
+            registry=registry,
         )
         self.studies = Gauge("polhode_studies", "Studies that are not finished.", registry=registry)
         self.members_missing = Gauge(

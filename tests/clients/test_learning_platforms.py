@@ -348,6 +348,19 @@ def test_answers_are_read_from_a_file_alone(tmp_path: Path, bundle: Path, made: 
     assert coderunner(tmp_path, bundle, f"import os\n{made}\nos._exit(0)")["fraction"] == 0.0
 
 
+def test_modules_that_a_program_writes_are_not_imported_by_what_grades_it(tmp_path: Path, bundle: Path) -> None:
+    """Of any name, as of those that Python imports only when it needs them."""
+    written = """
+import sys
+for name in (*sys.stdlib_module_names, "polhode_results", "numpy"):
+    open(name + ".py", "w").write("import os; os.write(1, b'{}'); os._exit(0)")
+answers = [1, 2]
+"""
+    found = coderunner(tmp_path, bundle, written)
+    assert found["fraction"] == 0.0
+    assert found["prologuehtml"] == ""
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read the memory of every process")
 def test_a_program_cannot_read_the_keys_in_memory(tmp_path: Path, bundle: Path) -> None:
     reading = "import os\nopen(f'/proc/{os.getppid()}/mem', 'rb')\nanswers = [6.2806, 1]"

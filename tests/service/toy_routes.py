@@ -61,7 +61,7 @@ class Ask(Request):
     body: ToyBody
     angular_velocity: AngularVelocity
     times: Times
-    behaviour: Literal["well", "nan", "fail", "unreachable", "sleep", "die", "warn", "wrong", "fill"] = "well"
+    behaviour: Literal["well", "nan", "fail", "unreachable", "sleep", "spin", "die", "warn", "wrong", "fill"] = "well"
 
 
 class Told(Envelope):
@@ -71,7 +71,7 @@ class Told(Envelope):
 
 
 def handle(question: Ask, budget: Budget) -> dict[str, Any]:
-    t = sample_times(question.times, budget)
+    since, t = time.process_time(), sample_times(question.times, budget)
     behaviour = question.behaviour
     if behaviour == "fail":
         raise RuntimeError("secret of the service")
@@ -81,6 +81,8 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
         raise SelfCheckFailed("energy", "rod", 1.5, 1e-3, 1e-12)
     if behaviour == "sleep":
         time.sleep(abs(question.angular_velocity[0]))
+    while behaviour == "spin" and time.process_time() - since < question.angular_velocity[0]:
+        pass
     if behaviour == "fill":
         np.ones(int(question.angular_velocity[0]), np.uint8)
     if behaviour == "die":
@@ -94,7 +96,7 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
 
 def is_small(question: Ask) -> bool:
     return (
-        question.behaviour not in ("sleep", "die", "fill")
+        question.behaviour not in ("sleep", "spin", "die", "fill")
         and (len(question.times) if isinstance(question.times, list) else question.times.count) <= 1000
     )
 

@@ -36,7 +36,7 @@ from core.multibody.trajectory.inherited import (
 )
 from core.multibody.trajectory.integrals import POINTS_OF_INTERVAL, require_few_points
 from core.multibody.trajectory.occurrences import ExtremesOf, ValueSearch
-from core.multibody.trajectory.scene_request import Output, require_affordable
+from core.multibody.trajectory.scene_request import Output
 from core.notices import Notice
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
@@ -70,7 +70,6 @@ class DescribedSystem:
     def trajectory(self, question: MotionQuestion) -> Trajectory:
         """Return the samples up to the events that end the motion; see `core.systems.question.System`."""
         motion, method = self.motion, question.method
-        require_affordable(len(question.times), len(motion.base.measures.table.names))
         rows = np.array([k for k, t in enumerate(question.times) if self._is_reached(float(t))], dtype=np.int64)
         times = question.times[rows]
         how, work = how_until(motion.phases, float(times.max(initial=0.0))), Work(len(times))

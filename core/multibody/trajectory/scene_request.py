@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from core.arrays import Floats
 from core.errors import BudgetExceeded
+from core.multibody.language.scene import Scene
+from core.multibody.table.coordinates import dimension_of
 from core.multibody.trajectory.occurrences import ExtremesOf, ValueSearch
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
@@ -16,14 +18,18 @@ from core.systems.solve import solve
 from core.systems.trajectory import Trajectory
 
 MOST_NUMBERS = 5_000_000
-"""Numbers that one trajectory may have."""
+"""Numbers that the places and velocities of one trajectory may have: 40 MB."""
 
 Output = str | ValueSearch | ExtremesOf
 
 
-def require_affordable(samples: int, coordinates: int) -> None:
-    """Raise `BudgetExceeded` for more samples of so many coordinates than one trajectory may have."""
-    most = MOST_NUMBERS // (4 * coordinates) if coordinates else samples
+def require_affordable(samples: int, scene: Scene) -> None:
+    """Raise `BudgetExceeded` for more samples of a scene than one trajectory may have.
+
+    It is known from the description, before anything is computed: the components of the bodies' places are counted.
+    """
+    # A component and its rate are two doubles each, a value and its tail.
+    most = MOST_NUMBERS // (4 * dimension_of(scene) * len(scene.bodies))
     if samples > most:
         raise BudgetExceeded("samples", samples, most, path=("times",), remedy="ask for fewer times")
 

@@ -38,6 +38,11 @@ def sleeping(seconds: float) -> dict[str, Any]:
     return GOOD | {"behaviour": "sleep", "angular_velocity": [seconds, 1.0, 1.0]}
 
 
+def spinning(seconds: float) -> dict[str, Any]:
+    """Return a question that uses so much processor time (s)."""
+    return GOOD | {"behaviour": "spin", "angular_velocity": [seconds, 1.0, 1.0]}
+
+
 @pytest.fixture(scope="module")
 async def service() -> AsyncIterator[Service]:
     # A busy machine takes seconds to replace a process that was killed.
@@ -101,10 +106,10 @@ async def test_a_killed_process_fails_its_own_question_only(client: httpx.AsyncC
 
 
 async def test_a_computation_past_its_deadline_is_stopped() -> None:
-    running = toy_service(compute_workers=1, deadline_seconds=1.0)
+    running = toy_service(compute_workers=1, deadline_seconds=0.1)
     async with running.lifespan(), client_of(running) as client:
         await until(lambda: running.warm)
-        response = await client.post("/v1/toy", json=sleeping(3.0))
+        response = await client.post("/v1/toy", json=spinning(60.0))
         assert (response.status_code, response.json()["code"]) == (503, "deadline-exceeded")
         assert "not answered in the background: ask for less" in response.json()["detail"]
 
@@ -222,11 +227,18 @@ async def test_every_process_killed_again_and_again_loses_nothing(service: Servi
     assert service.compute.processes.waiting == 0
 
 
-async def test_what_finds_no_process_in_time_is_refused_as_that(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.execution.worker_pool.MOST_LONG_OF_A_CLIENT", 0)
-    running = toy_service(compute_workers=1, deadline_seconds=0.3)
+async def test_where_no_process_can_be_started_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    running = toy_service(compute_workers=1, deadline_seconds=0.1)
     async with running.lifespan(), client_of(running) as client:
         await until(lambda: running.warm)
+
+        def lacking() -> None:
+            raise OSError(24, "Too many open files")
+
+        monkeypatch.setattr("service.execution.process_starter.socket.socketpair", lacking)
+        for pid in running.compute.processes.pids:
+            os.kill(pid, signal.SIGKILL)
+        await until(lambda: not running.compute.processes.pids)
         response = await client.post("/v1/toy", json=sleeping(0.1))
         assert (response.status_code, response.json()["code"]) == (503, "not-ready")
         assert response.headers["retry-after"] == "1"
@@ -276,7 +288,7 @@ async def test_all_kinds_of_documents_come_from_processes_as_from_here(client: h
 
 
 async def test_a_client_with_too_many_questions_waiting_is_refused_another(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.execution.worker_pool.MOST_LONG_OF_A_CLIENT", 1)
+    monkeypatch.setattr("service.execution.fair_shares.MOST_OF_A_CLIENT", 1)
     running = toy_service(compute_workers=1, max_waiting=2)
     async with running.lifespan(), client_of(running) as client:
         await until(lambda: running.warm)
@@ -324,14 +336,16 @@ async def test_one_clients_backlog_refuses_no_other(client: httpx.AsyncClient) -
 async def test_keys_are_charged_with_what_was_spent(tmp_path: Path) -> None:
     key, line = new_key("alpha")
     file = tmp_path / "keys"
-    file.write_text(line.replace("- -", "- 3") + "\n")
+    file.write_text(line.replace("- -", "- 0.1") + "\n")
     running = toy_service(compute_workers=1, keys_file=file)
     async with running.lifespan(), client_of(running) as client:
         await until(lambda: running.warm)
         head = {"authorization": f"Bearer {key}"}
-        assert (await client.post("/v1/toy", json=sleeping(0.1), headers=head)).status_code == 200
+        assert (await client.post("/v1/toy", json=spinning(0.03), headers=head)).status_code == 200
+        # Time that a process only waits is not used.
+        assert (await client.post("/v1/toy", json=sleeping(0.2), headers=head)).status_code == 200
         assert (await client.post("/v1/toy", json=GOOD, headers=head)).status_code == 200
-        assert (await client.post("/v1/toy", json=sleeping(3.2), headers=head)).status_code == 200
+        assert (await client.post("/v1/toy", json=spinning(0.3), headers=head)).status_code == 200
         assert (await client.post("/v1/toy", json=GOOD, headers=head)).json()["code"] == "quota-exceeded"
 
 

@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from service.execution.fair_shares import QUANTUM, FairShares
+from service.execution.fair_shares import MOST, MOST_OF_A_CLIENT, QUANTUM, FairShares
 
 
 @dataclass(eq=False)
@@ -64,6 +64,20 @@ def test_of_one_client_the_one_that_ran_least_goes_first() -> None:
     works = [Work("a", seconds=30 * QUANTUM), Work("a"), Work("a")]
     shared(works, 1, 20)
     assert [round(work.seconds / QUANTUM) for work in works] == [30, 10, 10]
+
+
+def test_half_of_the_room_is_kept_for_clients_that_have_none() -> None:
+    shares: FairShares[Work] = FairShares()
+    for client in map(str, range(MOST)):
+        assert shares.may_have_another(client)
+        while shares.may_have_another(client):
+            shares.add(Work(client))
+        assert not shares.full or client == str(MOST - MOST // 2 + MOST // 2 // MOST_OF_A_CLIENT - 1)
+        if shares.full:
+            break
+    clients = Counter(work.client for work in shares)
+    assert max(clients.values()) == MOST_OF_A_CLIENT
+    assert len(clients) == MOST // 2 + MOST // 2 // MOST_OF_A_CLIENT
 
 
 def test_nothing_is_stopped_within_its_quantum() -> None:

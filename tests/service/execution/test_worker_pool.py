@@ -23,9 +23,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.execution.job import Crowded, DeadlineExceeded, Job, QueueTimeout, SliceUsed, Stopped, WorkerDied
+from service.execution.fair_shares import MOST_OF_A_CLIENT
+from service.execution.job import DeadlineExceeded, Job, NoProcess, SliceUsed, Stopped, WorkerDied
 from service.execution.process_starter import ProcessStarter
-from service.execution.worker_pool import MOST_LONG_OF_A_CLIENT, Processes
+from service.execution.worker_pool import Processes
 from service.execution.worker_process import Process
 from tests.service.conftest import PATIENCE
 from tests.service.toy_processes import framed, main
@@ -101,10 +102,9 @@ def ask(
     processes: Processes,
     request: bytes,
     longest: float = PATIENCE,
-    patience: float = PATIENCE,
     client: str = "client",
 ) -> Job:
-    return processes.submit([framed(request)], client, longest=longest, patience=patience)
+    return processes.submit([framed(request)], client, longest=longest)
 
 
 def parent_of(pid: int) -> int:
@@ -305,27 +305,12 @@ class TestQueue:
             (place / "gate").touch()
             assert [await job.reply for job in jobs] == [b"0", b"1", b"2", b"3", b"4"]
 
-    async def test_what_finds_no_process_in_time_is_reported_and_never_begun(self, place: Path) -> None:
+    async def test_nobody_is_refused_for_what_others_have_taken(self, place: Path) -> None:
+        """It waits for longer than it may work."""
         async with warm(place) as (processes, _):
-            ahead, hasty = ask(processes, b"wait a"), ask(processes, b"echo b", patience=0.05)
-            patient = ask(processes, b"echo c")
-            with pytest.raises(QueueTimeout):
-                await hasty.reply
-            assert not ahead.reply.done()
-            (place / "gate").touch()
-            assert [await ahead.reply, await patient.reply] == [b"a", b"c"]
-            assert begun(place) == ["a", "c"]
-
-    async def test_patience_ends_with_the_turn_and_the_deadline_begins_with_it(self, place: Path) -> None:
-        async with warm(place) as (processes, _):
-            # It waits for longer than it may work, and works for longer than it may wait.
-            ahead = ask(processes, b"wait a", patience=0.05)
-            behind = ask(processes, b"echo b", longest=1.0)
-            waits_longer = ask(processes, b"echo c", patience=1.1)
-            with pytest.raises(QueueTimeout):
-                await waits_longer.reply
-            assert ahead.begun
-            assert not ahead.reply.done()
+            ahead, behind = ask(processes, b"wait a"), ask(processes, b"echo b", longest=0.02, client="other")
+            await asyncio.sleep(0.1)
+            assert (ahead.begun, behind.begun, behind.reply.done()) == (True, False, False)
             (place / "gate").touch()
             assert [await ahead.reply, await behind.reply] == [b"a", b"b"]
 
@@ -454,9 +439,9 @@ class TestLoss:
             monkeypatch.setattr("service.execution.process_starter.socket.socketpair", lacking)
             (pid,) = processes.pids
             kill_unnoticed(pid)
-            job, behind = ask(processes, b"echo a", longest=0.05), ask(processes, b"echo b", patience=0.05)
+            job, behind = ask(processes, b"echo a", longest=0.05), ask(processes, b"echo b", longest=0.05)
             for one in (job, behind):
-                with pytest.raises(QueueTimeout):
+                with pytest.raises(NoProcess):
                     await one.reply
             assert begun(place) == []
             assert not processes.any_ready
@@ -466,7 +451,7 @@ class TestLoss:
             before = set(processes.pids)
             (server,) = {parent_of(pid) for pid in before}
             os.kill(server, signal.SIGKILL)
-            for job in [ask(processes, b"wait %d" % i, longest=0.1) for i in range(2)]:
+            for job in [ask(processes, b"spin %d" % i, longest=0.05) for i in range(2)]:
                 with pytest.raises(DeadlineExceeded):
                     await job.reply
             await until(lambda: not any(map(running, before)))
@@ -511,12 +496,16 @@ class TestLoss:
 class TestKilled:
     async def test_one_that_works_for_too_long_is_stopped(self, place: Path) -> None:
         async with warm(place, 2) as (processes, lost):
-            late = ask(processes, b"wait a", longest=0.05)
+            late = ask(processes, b"spin a", longest=0.05)
             (pid,) = (pid for pid, works in processes.pids.items() if works)
             with pytest.raises(DeadlineExceeded):
                 await late.reply
             await until(lambda: not running(pid) and holds_together(processes))
             assert pid not in processes.pids
+            assert late.used >= 0.05
+            # One that only waits has its end, too.
+            with pytest.raises(DeadlineExceeded):
+                await ask(processes, b"wait a", longest=0.005).reply
             assert await ask(processes, b"echo b").reply == b"b"
             # It is not reported as a loss: nobody need look for its reason. One that comes later is.
             assert lost == []
@@ -613,7 +602,7 @@ class TestClasses:
             for i in range(3):
                 with pytest.raises(SliceUsed):
                     await processes.submit(
-                        [framed(b"spin %d" % i)], "client", longest=PATIENCE, patience=PATIENCE, may_be_long=False
+                        [framed(b"spin %d" % i)], "client", longest=PATIENCE, may_be_long=False
                     ).reply
             assert await ask(processes, b"echo a").reply == b"a"
             assert (processes.long, len(moved)) == (0, 0)
@@ -643,8 +632,8 @@ class TestClasses:
 
     async def test_a_client_with_many_long_requests_has_the_next_one_wait(self, place: Path) -> None:
         async with classes(place) as (processes, moved):
-            jobs = [ask(processes, b"wait %d" % i, client="many") for i in range(MOST_LONG_OF_A_CLIENT + 2)]
-            await until(lambda: len(moved) == MOST_LONG_OF_A_CLIENT)
+            jobs = [ask(processes, b"wait %d" % i, client="many") for i in range(MOST_OF_A_CLIENT + 2)]
+            await until(lambda: len(moved) == MOST_OF_A_CLIENT)
             assert await ask(processes, b"echo a", client="other").reply == b"a"
             assert processes.waiting == 2
             assert [job.begun for job in jobs[-2:]] == [False, False]
@@ -653,29 +642,32 @@ class TestClasses:
             for job in jobs:
                 await job.reply
 
-    async def test_where_no_more_may_begin_a_long_one_is_refused(
+    async def test_where_there_is_no_room_for_another_long_one_it_waits_for_it(
         self, place: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("service.execution.worker_pool.MOST_LONG", 1)
+        monkeypatch.setattr("service.execution.fair_shares.MOST", 2)
         async with classes(place) as (processes, moved):
             first = [ask(processes, b"wait %d" % i, client=str(i)) for i in range(2)]
             await until(lambda: len(moved) == 2)
-            with pytest.raises(Crowded):
-                await ask(processes, b"wait b", client="b").reply
+            third = ask(processes, b"wait b", client="b")
+            await until(lambda: third.is_long)
+            assert (processes.long, processes.waiting, third.reply.done()) == (2, 1, False)
             assert await ask(processes, b"echo c", client="c").reply == b"c"
+            processes.drop(first[0])
+            await until(lambda: len(moved) == 3)
             (place / "gate").touch()
-            assert [await job.reply for job in first] == [b"0", b"1"]
+            assert [await job.reply for job in (first[1], third)] == [b"1", b"b"]
 
-    async def test_the_deadline_counts_the_time_in_which_it_runs(self, place: Path) -> None:
+    async def test_the_deadline_counts_the_processor_time_that_it_uses(self, place: Path) -> None:
         async with classes(place) as (processes, moved):
-            jobs = [ask(processes, b"wait %d" % i, longest=0.5) for i in range(2)]
+            jobs = [ask(processes, b"spin %d" % i, longest=0.25) for i in range(2)]
             await until(lambda: len(moved) == 2)
             for job in jobs:
                 with pytest.raises(DeadlineExceeded):
                     await job.reply
-            assert all(job.seconds >= 0.5 for job in jobs)
-            # Both together ran for a second on the one processor.
-            assert max(job.waited for job in jobs) >= 0.9
+            assert all(job.used >= 0.25 for job in jobs)
+            # Both together had half a second of the one processor.
+            assert max(job.waited for job in jobs) >= 0.45
             await until(lambda: holds_together(processes))
 
     async def test_what_is_stopped_can_be_dropped(self, place: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from service.http.held_bytes import HeldBytes
 from service.http.limits import Bodies, ClientGone, negotiated, require_readable
 from service.problems import Refusal
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
@@ -128,20 +129,22 @@ async def until_waiting() -> None:
 @pytest.mark.anyio
 class TestBodies:
     async def test_parts_are_joined(self) -> None:
-        sender, bodies = Sender(), Bodies(10, 10, 60.0)
+        held = HeldBytes(10)
+        sender, bodies = Sender(), Bodies(10, held, 60.0)
         for part, more in ((b"ab", True), (b"", True), (b"c", False)):
             sender.send(part, more)
-        assert await bodies.read(sender.parts.get, {}) == b"abc"
-        assert bodies.held == 0
+        assert await bodies.read(sender.parts.get, {}, "client") == b"abc"
+        assert held.total == 0
 
     async def test_what_is_unfinished_is_counted_with_the_rest_and_refused_beyond_the_limit(self) -> None:
-        answers = 40
-        bodies = Bodies(60, 100, 60.0, lambda: answers)
-        first, second, third = Sender(), Sender(), Sender()
-        reading = [asyncio.create_task(bodies.read(sender.parts.get, {})) for sender in (first, second, third)]
-        first.send(b"x" * 50)
+        held = HeldBytes(100)
+        held.add("answered", 40)
+        bodies = Bodies(60, held, 60.0)
+        first, second, third = senders = Sender(), Sender(), Sender()
+        reading = [asyncio.create_task(bodies.read(each.parts.get, {}, i)) for i, each in enumerate(senders)]
+        first.send(b"x" * 45)
         await until_waiting()
-        assert bodies.held == 50
+        assert held.total == 85
         second.send(b"x" * 20)
         with pytest.raises(Refusal) as caught:
             await reading[1]
@@ -149,30 +152,31 @@ class TestBodies:
         assert (problem.type.code, dict(problem.headers)) == ("too-busy", {"Connection": "close"})
         assert problem.retry_after == 1.0
         # Nothing is held for who was refused; the others go on.
-        assert bodies.held == 50
+        assert held.total == 85
         third.send(b"x" * 10, more=False)
         assert len(await reading[2]) == 10
         first.send(b"x", more=False)
-        assert len(await reading[0]) == 51
-        assert bodies.held == 0
+        assert len(await reading[0]) == 46
+        assert held.total == 40
 
     @pytest.mark.parametrize("begun", [False, True])
     async def test_a_body_that_does_not_arrive_in_time_is_refused(self, begun: bool) -> None:
-        sender, bodies = Sender(), Bodies(100, 100, 0.01)
+        held = HeldBytes(100)
+        sender, bodies = Sender(), Bodies(100, held, 0.01)
         if begun:
             sender.send(b"x")
         watching = asyncio.create_task(bodies.watch())
         with pytest.raises(Refusal) as caught:
-            await asyncio.wait_for(bodies.read(sender.parts.get, {}), PATIENCE)
+            await asyncio.wait_for(bodies.read(sender.parts.get, {}, "client"), PATIENCE)
         watching.cancel()
         assert caught.value.problem.type.status == 408
         assert ("Connection", "close") in caught.value.problem.headers
-        assert bodies.held == 0
+        assert held.total == 0
 
     async def test_who_is_in_time_is_not_cancelled_and_who_cancels_is_obeyed(self) -> None:
-        sender, bodies = Sender(), Bodies(100, 100, 60.0)
+        sender, bodies = Sender(), Bodies(100, HeldBytes(100), 60.0)
         watching = asyncio.create_task(bodies.watch())
-        reading = asyncio.create_task(bodies.read(sender.parts.get, {}))
+        reading = asyncio.create_task(bodies.read(sender.parts.get, {}, "client"))
         await until_waiting()
         reading.cancel()
         with pytest.raises(asyncio.CancelledError):
@@ -180,9 +184,10 @@ class TestBodies:
         watching.cancel()
 
     async def test_a_client_that_leaves_holds_nothing(self) -> None:
-        sender, bodies = Sender(), Bodies(100, 100, 60.0)
+        held = HeldBytes(100)
+        sender, bodies = Sender(), Bodies(100, held, 60.0)
         sender.send(b"x" * 9)
         sender.parts.put_nowait({"type": "http.disconnect"})
         with pytest.raises(ClientGone):
-            await bodies.read(sender.parts.get, {})
-        assert bodies.held == 0
+            await bodies.read(sender.parts.get, {}, "client")
+        assert held.total == 0

@@ -393,7 +393,7 @@ async def test_a_request_that_takes_long_is_not_ended_by_the_limit_of_heads() ->
 
 
 async def test_unfinished_bodies_are_bounded_together() -> None:
-    async with serving(max_held_bytes=1_000_000) as port:
+    async with serving(max_held_bytes=2_000_000) as port:
         waiting = []
         for _ in range(3):
             reader, writer = await asyncio.open_connection("127.0.0.1", port)
