@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 
@@ -101,6 +101,10 @@ class SceneModel:
     apart: tuple[PartModel, ...]
     noticed: tuple[str, ...]
     redundant: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def with_noticed(self, sentences: Sequence[str]) -> SceneModel:
+        """Return the model with more of what was noticed."""
+        return replace(self, noticed=(*self.noticed, *sentences)) if sentences else self
 
     @property
     def moving(self) -> list[PartModel]:

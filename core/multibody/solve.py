@@ -176,5 +176,7 @@ def _checked(scene: Scene, request: SceneRequest) -> SceneSolution:
     """Answer a question about a scene as one part, and check the answer against the description."""
     answer, system = answered(scene, request)
     if request.budget.audited:
-        require(audited(scene, answer, system.sampled, request.times))
+        verdict = audited(scene, answer, system.sampled, request.times)
+        require(verdict.failure)
+        answer = replace(answer, model=answer.model.with_noticed(verdict.noticed))
     return answer

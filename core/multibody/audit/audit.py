@@ -23,7 +23,7 @@ from core.multibody.audit.claims import check_claims
 from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.energy import Energies, potential_error
 from core.multibody.audit.equilibria import check_equilibria
-from core.multibody.audit.failure import ROUNDING, Failure, Ledger
+from core.multibody.audit.failure import ROUNDING, Ledger, Verdict
 from core.multibody.audit.impacts import Impacts
 from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
@@ -46,8 +46,8 @@ CLOSED_FORM = "closed-form"
 """Kind of the method by which a motion is answered that no client has named a method for."""
 
 
-def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Numbers) -> Failure | None:
-    """Return the worst law that an answer does not keep, None where it keeps all that are checked.
+def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Numbers) -> Verdict:
+    """Return whether an answer keeps the laws that are checked, and which one it does not.
 
     Parameters
     ----------
@@ -61,11 +61,13 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
     """
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         description = description_of(scene, answered=answer.phases[0].states if answer.phases else None)
-        if not description.moderate or answer.phases == ():
-            return None
-        found = _Audit(description, answer, times).worst(sampler, Ledger(ROUNDING))
-        if found is not None and _was_rounded(description, answer):
-            found = _Audit(description, answer, times).worst(sampler, Ledger(MEANT))
+        if answer.phases == ():
+            return Verdict()
+        if not description.moderate:
+            return Verdict(compared=False)
+        found = _Audit(description, answer, times).verdict(sampler, Ledger(ROUNDING))
+        if found.failure is not None and _was_rounded(description, answer):
+            found = _Audit(description, answer, times).verdict(sampler, Ledger(MEANT))
         return found
 
 
@@ -90,13 +92,13 @@ class _Audit:
         # A method that a client names computes samples of its own.
         self.own = found is None or found.method == CLOSED_FORM
 
-    def worst(self, sampler: Sampler, ledger: Ledger) -> Failure | None:
-        """Compare everything, and return the worst failure."""
+    def verdict(self, sampler: Sampler, ledger: Ledger) -> Verdict:
+        """Compare everything."""
         description, answer = self.description, self.answer
         asked = self._asked(sampler)
         parts = [part for part in (None if asked is None else asked.part, self.own_rows) if part is not None]
         if not parts:
-            return None
+            return Verdict()
         samples = samples_of(description, parts)
         spun = _spun(description, samples)
         gains = None if asked is None or not spun else accelerations_of(description, answer)
@@ -109,7 +111,7 @@ class _Audit:
         sizes = Sizes(description, samples)
         if not max(sizes.extent, sizes.fastest) < LARGEST:
             # The squares of a motion that has gone so far are no doubles, though its digits may be answered.
-            return None
+            return Verdict(compared=False)
         check_samples(ledger, measures, samples, states, sizes)
         if self.own_rows is not None:
             check_totals(ledger, description, samples, self.own_rows)
@@ -125,7 +127,7 @@ class _Audit:
                 answered = (np.zeros(0), {}) if found is None else (found.time, found.columns)
                 sought = with_totals(description, asked.whole, asked.searches.names, ledger.rounding)
                 asked.searches.check(ledger, sought, *answered)
-        return ledger.worst
+        return Verdict(ledger.worst)
 
     def _check_motion(
         self,

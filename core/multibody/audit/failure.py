@@ -48,6 +48,33 @@ class Failure:
         return self.residual / self.allowed if self.allowed > 0.0 else np.inf
 
 
+NOT_COMPARED = (
+    "numbers are so large or small that their powers are no doubles: the answer is not checked against the laws of "
+    "mechanics"
+)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the audit says of an answer.
+
+    Attributes
+    ----------
+    failure : Failure or None
+        The worst law that it does not keep; None where it keeps all that are checked.
+    compared : bool
+        Whether anything was: powers of very large and very small numbers are no doubles.
+    """
+
+    failure: Failure | None = None
+    compared: bool = True
+
+    @property
+    def noticed(self) -> tuple[str, ...]:
+        """What is said of it to the client, in sentences."""
+        return () if self.compared else (NOT_COMPARED,)
+
+
 def require(failure: Failure | None) -> None:
     """Raise `SelfCheckFailed` for a law that an answer does not keep."""
     if failure is not None:

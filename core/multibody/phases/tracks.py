@@ -147,11 +147,20 @@ class Tracks:
     def follow_scales(
         self, time: float, before: Sequence[Ball], after: Sequence[Ball], acceleration: Sequence[Ball]
     ) -> None:
-        """Take account of how large coordinates and rates were during a phase, as far as its ends tell."""
+        """Take account of how large coordinates and rates were during a phase, as far as its ends tell.
+
+        A way that pairs of doubles may leave of nothing would be fast in the short phases between bounces.
+        """
+        turned = {"rad": 1.0, "1": 1.0}
+        nothing = [
+            0.0 if self.exact else FLOOR * max(size, turned.get(unit, 0.0))
+            for unit, size in zip(self.units, self.scales()[0], strict=True)
+        ]
         self.lost = [x + time * y for x, y in zip(*self.lost, strict=True)], self.lost[1]
         for i, unit in enumerate(self.units):
             pull = abs(float(acceleration[i].mid()))
             moved = abs(float((after[i] - before[i]).mid()))
+            moved = moved if moved > nothing[i] else 0.0
             # A phase may be shorter than the least double.
             rate = moved / time if time > 0.0 else 0.0
             for largest, x in zip(self._largest, (pull * time * time, max(pull * time, rate)), strict=True):

@@ -15,7 +15,7 @@ from core.errors import NotApplicable
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.answer import BodyAcceleration, Energy, SceneSolution
 from core.multibody.audit.audit import audited
-from core.multibody.audit.failure import Failure
+from core.multibody.audit.failure import Verdict
 from core.multibody.language.scene import Scene
 from core.multibody.proven.part_proof import ProvenAnswer, ProvenColumn
 from core.systems.methods.closed_form import ClosedFormEvaluation
@@ -32,8 +32,8 @@ Moving = Callable[[Sequence[Ball]], Digits]
 """From times to the columns of the motion."""
 
 
-def audited_digits(scene: Scene, answer: ProvenAnswer, moving: Moving, times: Floats) -> Failure | None:
-    """Return the worst law that an answer in digits does not keep, None where it keeps all that are checked.
+def audited_digits(scene: Scene, answer: ProvenAnswer, moving: Moving, times: Floats) -> Verdict:
+    """Return whether an answer in digits keeps the laws that are checked, and which one it does not.
 
     Parameters
     ----------

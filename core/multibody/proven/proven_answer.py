@@ -8,6 +8,7 @@ do not tell from zero counts as zero.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import Any
@@ -92,7 +93,9 @@ def proven_answer(
         answer = _answer(proofs, times, outputs)
         if audited:
             moving = partial(_columns, proofs)
-            require(audited_digits(scene, answer, moving, np.array([float(time) for time in times])))
+            verdict = audited_digits(scene, answer, moving, np.array([float(time) for time in times]))
+            require(verdict.failure)
+            answer = replace(answer, model=answer.model.with_noticed(verdict.noticed))
         return answer
 
     return until_determined(found, bits)

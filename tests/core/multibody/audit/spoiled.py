@@ -41,7 +41,7 @@ class Audited:
 
     def failure(self) -> Failure | None:
         """Return what the audit finds."""
-        return audited(self.scene, self.answer, self.sampler, self.times)
+        return audited(self.scene, self.answer, self.sampler, self.times).failure
 
     def with_columns(self, change: Change) -> Audited:
         """Return the answer with a motion whose columns are changed, where they are answered and between."""

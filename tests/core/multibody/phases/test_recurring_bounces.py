@@ -6,9 +6,11 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from flint import arb
 from mpmath import atan2, mp, mpf, sqrt
 
 from core.multibody.answer import SceneSolution
+from core.multibody.phases.tracks import Tracks
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import read
 from tests.oracles.plain_engine.comparison.comparing import compared
@@ -184,3 +186,11 @@ def test_four_contacts_of_which_three_are_independent_come_to_rest_as_one(shape:
     assert found
     for time, error in found.values():
         assert abs(time - 0.6) <= error + 1e-15
+
+
+def test_what_rounding_leaves_of_a_turn_is_no_rate_of_a_short_phase() -> None:
+    tracks = Tracks(["m", "rad"], [arb(5), arb(0)], [arb(3), arb(0)])
+    tracks.each *= 2
+    tracks.follow_scales(1e-10, tracks.first.q, [arb(5) + arb("3e-10"), arb("1e-33")], [arb(0), arb(0)])
+    assert tracks.fastest("rad") == 0.0
+    assert tracks.fastest("m") == pytest.approx(3.0)

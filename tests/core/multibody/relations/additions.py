@@ -93,10 +93,13 @@ def beside(request: Json, other: str) -> Transformed | None:
 
 
 def repeated(request: Json) -> Transformed | None:
-    """Return a request with its first rod or track given twice."""
+    """Return a request with its first rod or track given twice.
+
+    Two guides without play may press against one another as much as they like: what rubs in them is not decided.
+    """
     found = copy.deepcopy(request)
     connections = found.get("connections", [])
-    first = next((one for one in connections if one["kind"] in ("rod", "track")), None)
+    first = next((one for one in connections if one["kind"] in ("rod", "track") and "friction" not in one), None)
     if first is None:
         return None
     names = {i: one.get("name", f"{one['kind']}-{i + 1}") for i, one in enumerate(connections)}

@@ -256,9 +256,9 @@ def mirrored(request: Json) -> Transformed | None:
 
 
 def reversed_in_time(request: Json) -> Transformed | None:
-    """Return a smooth request whose motion is the original one at opposite times."""
+    """Return a smooth request whose motion is the original one at opposite times, which that under friction is not."""
     kinds = {one["kind"] for one in request.get("connections", ())}
-    restless = any("restitution" in one for one in request.get("connections", ()))
+    restless = any({"restitution", "friction"} & one.keys() for one in request.get("connections", ()))
     if kinds & {"contact", "damper", "string", "chain"} or restless or "times" not in request:
         return None
     found = copy.deepcopy(request)

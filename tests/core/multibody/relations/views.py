@@ -18,13 +18,17 @@ START = 2.0**-40
 
 @dataclass(frozen=True)
 class Figure:
-    """Values of one quantity, shape (n,) or (n, k), and their stated error; `what` is the last part of its name."""
+    """Values of one quantity, shape (n,) or (n, k), and their stated error; `what` is the last part of its name.
+
+    Least and largest values are those until a time.
+    """
 
     values: Floats
     unit: str
     error: float
     what: str
     owner: str
+    until: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -102,12 +106,10 @@ def view_of(answer: SceneSolution) -> View:
         for name, column in motion.columns.items():
             owner, _, what = name.rpartition(".")
             figures[f"column:{name}"] = Figure(column.values, column.unit, column.error, what, owner)
-    # Just before a singular end values grow beyond bounds, and its time is not known from one form as from another.
-    bounded = answer.ended is None or answer.ended.kind != "singular"
-    for found in (answer.extremes or ()) if bounded else ():
+    for found in answer.extremes or ():
         owner = found.quantity.partition(".")[0]
         values = np.array([[found.least, found.largest]])
-        figures[f"extremes:{found.quantity}"] = Figure(values, found.unit, found.error, "extremes", owner)
+        figures[f"extremes:{found.quantity}"] = Figure(values, found.unit, found.error, "extremes", owner, found.until)
     for body, one in (answer.accelerations or {}).items():
         _start(figures, f"{body}.acceleration", one.linear, "m/s^2")
         if one.angular is not None:

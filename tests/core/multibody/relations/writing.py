@@ -22,10 +22,19 @@ UNITS: dict[str, tuple[int, int, int]] = {
     "rad/s^2": (0, 0, -2),
 }  # fmt: skip
 
+_BY_TIME = re.compile(r"\bt\b")
+"""The name of the time in a formula."""
+
 
 def in_units(request: Json, length: int, mass: int, time: int) -> Transformed | None:
-    """Return a request in units in which lengths, masses and times have other numbers, by these factors."""
-    if any("body" in body for body in request["bodies"].values()):
+    """Return a request in units in which lengths, masses and times have other numbers, by these factors.
+
+    Numbers within formulas of the motion have units that nothing says, so that such requests are left out.
+    """
+    in_formulas = any(
+        {"law", "drive"} & one.keys() or _BY_TIME.search(str(one)) for one in request.get("connections", ())
+    )
+    if in_formulas or any("body" in body for body in request["bodies"].values()):
         return None
     found = copy.deepcopy(request)
 
@@ -91,7 +100,7 @@ def in_units(request: Json, length: int, mass: int, time: int) -> Transformed | 
 
     def image(figure: Figure) -> Figure | None:
         by = factor(figure.unit)
-        return replace(figure, values=figure.values * by, error=figure.error * by)
+        return replace(figure, values=figure.values * by, error=figure.error * by, until=figure.until * time)
 
     def whole(view: View) -> View:
         own = view.mapped(image)

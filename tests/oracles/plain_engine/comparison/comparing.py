@@ -32,6 +32,7 @@ RESOLVED = 1e-9
 """Share of the size of a figure within which two answers are one."""
 LEAST = 1e-3
 """Size of a figure (SI units) below which it is nothing beside the scenes that are compared."""
+IMPACTS = ("touch", "taut", "stop")
 LISTED = 12
 """Impacts of one contact in a row that an answer lists before its bounces come to rest."""
 
@@ -119,9 +120,13 @@ class _Timed:
 
 def _compare(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Motion, times: Sequence[float]) -> None:
     plain, until = _known(first, moved, max(times))
-    # The plain engine integrates across the pieces of formulas, whose changes are no events of its motion.
+    # The plain engine integrates across the pieces of formulas, whose changes are no events of its motion, and names of
+    # what touches at an impact those alone that take an impulse.
+    struck = [event.time for event in solution.events if event.impulses]
     answered = [
-        (event.kind, event.name, event.time, event.error) for event in solution.events if event.kind != "switch"
+        (event.kind, event.name, event.time, event.error)
+        for event in solution.events
+        if event.kind != "switch" and not (event.kind in IMPACTS and not event.impulses and event.time in struck)
     ]
     ended = None if solution.problem is None else (solution.problem.code, solution.problem.time)
     if ended is None and solution.ended is not None and solution.ended.kind in ("singular", "end-of-chain", "lift-off"):
@@ -174,8 +179,6 @@ def _first_event(
     plain: list[_Timed], answered: list[tuple[str, str, float, float]], until: float, motion: Motion
 ) -> Difference | None:
     """Return the first event that one has and the other has not, up to a time."""
-    # Bounces that accumulate are listed up to a number of them only.
-    impacts = {"touch", "taut", "stop"}
     left = list(answered)
     for one in plain:
         if one.time > until - one.tolerance:
@@ -184,7 +187,8 @@ def _first_event(
         if same:
             left.remove(same[0])
             continue
-        if one.kind in impacts and _accumulates(one, answered):
+        # Bounces that accumulate are listed up to a number of them only.
+        if one.kind in IMPACTS and _accumulates(one, answered):
             continue
         near = min((x for x in left if x[:2] == (one.kind, one.name)), key=lambda x: abs(x[2] - one.time), default=None)
         shown = "none" if near is None else f"{near[2]:.15g}"
@@ -210,7 +214,8 @@ def _settles(event: Event, name: str, time: float) -> bool:
 def _samples(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Motion, until: float) -> None:
     trajectory = solution.trajectory
     assert trajectory is not None
-    events = [event.time for event in first.events]
+    # At an event figures have two values, and at the last of the times it may be an event of one answer alone.
+    events = [event.time for event in (*first.events, *solution.events)]
     mechanism = first.mechanism
     weights = mechanism.coordinates.weights(mechanism.coordinates.start(), mechanism.gravity)
     for k, time in enumerate(trajectory.time):
