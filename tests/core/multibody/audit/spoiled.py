@@ -14,7 +14,7 @@ import numpy as np
 import core.multibody.solve as solving
 from core.multibody.answer import SceneSolution
 from core.multibody.audit.audit import audited
-from core.multibody.audit.failure import Failure
+from core.multibody.audit.failure import Failure, Verdict
 from core.multibody.language.reading import scene_from
 from core.multibody.language.scene import Scene
 from core.systems.trajectory import Column
@@ -61,14 +61,15 @@ def answered(description: dict[str, Any], times: Any = TIMES, outputs: Any = OUT
     """Return the answer to a scene, unaudited, and its motion."""
     scene, kept = scene_from(description), []
 
-    def keep(part: Scene, answer: SceneSolution, sampler: Any, asked: Any) -> None:
+    def keep(part: Scene, answer: SceneSolution, sampler: Any, asked: Any) -> Verdict:
         kept.append(Audited(part, answer, sampler, asked))
+        return Verdict()
 
-    own, solving.audited = solving.audited, keep  # type: ignore[assignment]
+    own, solving.audited = solving.audited, keep
     try:
         solving.solve_scene(scene, times, outputs)
     finally:
-        solving.audited = own  # type: ignore[assignment]
+        solving.audited = own
     return kept[0]
 
 
