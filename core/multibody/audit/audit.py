@@ -100,6 +100,8 @@ class _Audit:
         if not parts:
             return Verdict()
         samples = samples_of(description, parts)
+        if asked is not None:
+            samples = samples.with_first_forces(*forces_of(answer))
         spun = _spun(description, samples)
         gains = None if asked is None or not spun else accelerations_of(description, answer)
         start = samples.at(slice(0, 1))
@@ -146,7 +148,7 @@ class _Audit:
         check_forces(ledger, description, answer, start, float(sizes.force[0]))
         if after is not None:
             after.check(ledger, measures, len(samples.times))
-            forces = forces_of(answer)
+            forces, _ = forces_of(answer)
             for own in measures if forces else ():
                 rest = own.connection.own_rest(start.placement, start.motion, after.gains_as_motion, forces)
                 if rest is not None:
@@ -200,8 +202,6 @@ class _Audit:
             for name, spin in found.spins.items():
                 motion[name] = Twist(motion[name].velocity, np.concatenate([np.zeros((int(begins), 3)), spin]))
             some = replace(some, motion=motion)
-        if begins:
-            some = some.with_first_forces(forces_of(self.answer))
         check_balance(ledger, description, freedoms, Accelerated(some, accelerations, unsure, begins))
 
     def _check_energy(self, ledger: Ledger, samples: Samples) -> None:
@@ -263,9 +263,11 @@ class _Audit:
     def _needs_forces(self) -> bool:
         """Return whether forces in time are answered, decide what touches, or belong to what has mass of its own.
 
-        The equations of motion hold without those that keep what is held.
+        The equations of motion hold without those that keep what is held; those of the start may be answered.
         """
         found = self.answer.trajectory
+        if self.answer.forces is not None and not self.end > self.begin:
+            return False
         if found is not None and any(column.unit in ("N", "N m") for column in found.columns.values()):
             return True
         return any(connection.mass or connection.opens for connection in self.description.connections)

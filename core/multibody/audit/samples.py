@@ -66,14 +66,14 @@ class Samples:
         force_errors = {name: values[rows] for name, values in self.force_errors.items()}
         return Samples(self.times[rows], placement, motion, forces, errors, force_errors, self.placed)
 
-    def with_first_forces(self, given: Mapping[str, Numbers]) -> Samples:
-        """Return the samples with the forces of the first replaced by given ones of one sample, that have no error."""
-        forces, errors, rest = {}, {}, len(self.times) - 1
-        for name in self.forces.keys() | given.keys():
-            first, then = given.get(name, np.full(1, np.nan)), self.forces.get(name)
-            forces[name] = np.concatenate([first, np.full(rest, np.nan) if then is None else then[1:]])
-            errors[name] = np.zeros(rest + 1) if then is None else self.force_errors[name].copy()
-            errors[name][0] = 0.0
+    def with_first_forces(self, given: Mapping[str, Numbers], known: Mapping[str, float]) -> Samples:
+        """Return the samples with the forces of the first replaced by given ones of one sample, and their errors."""
+        forces, errors = dict(self.forces), dict(self.force_errors)
+        for name, first in given.items():
+            then = self.forces.get(name, np.full(len(self.times), np.nan))
+            forces[name] = np.concatenate([first, then[1:]])
+            off = self.force_errors.get(name, np.zeros(len(self.times)))
+            errors[name] = np.concatenate([[known[name]], off[1:]])
         return replace(self, forces=forces, force_errors=errors)
 
     def flattened(self) -> Samples:

@@ -86,9 +86,11 @@ def unsure_of(description: Description, answer: SceneSolution, freedoms: Freedom
     return unsure
 
 
-def forces_of(answer: SceneSolution) -> dict[str, Numbers]:
-    """Return the forces at the start that are answered, as one sample; NaN where they are not determined."""
-    return {name: np.array([np.nan if one.value is None else one.value]) for name, one in (answer.forces or {}).items()}
+def forces_of(answer: SceneSolution) -> tuple[dict[str, Numbers], dict[str, float]]:
+    """Return the forces at the start that are answered, as one sample, NaN where not determined; and their errors."""
+    given = (answer.forces or {}).items()
+    forces = {name: np.array([np.nan if one.value is None else one.value]) for name, one in given}
+    return forces, {name: one.error or 0.0 for name, one in given}
 
 
 def check_forces(ledger: Ledger, description: Description, answer: SceneSolution, start: Samples, scale: float) -> None:
@@ -101,7 +103,7 @@ def check_forces(ledger: Ledger, description: Description, answer: SceneSolution
     scale : float
         Size of the forces of the scene (N), beside which those that follow from weights are known.
     """
-    forces = forces_of(answer)
+    forces, _ = forces_of(answer)
     for one in description.connections:
         if not one.derives or any(name not in forces for name in one.forces):
             continue

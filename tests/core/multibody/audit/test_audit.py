@@ -178,7 +178,7 @@ def test_forces_at_the_start_that_do_not_follow_from_others_are_refused() -> Non
     forces["s.1.tension"] = replace(forces["s.1.tension"], value=value * (1 + 1e-9))
     failure = replace(one, answer=replace(one.answer, forces=forces)).failure()
     assert failure is not None
-    assert failure.law == "s.1.tension at the start by the others"
+    assert failure.law == "s.1.tension by the others"
 
 
 @pytest.mark.parametrize("height", ["1e-300", "1e-100", "1e-30", 0])
