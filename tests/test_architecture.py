@@ -394,6 +394,10 @@ TESTED_IN |= {
             "search/pieces search/taylor"
         ),
         "phases/test_sums": "phases/stretches",
+        "phases/test_changed_connections": (
+            "audit/blows audit/stages contacts/impulsive_rates language/occasions phases/schedule table/blows "
+            "table/timed"
+        ),
         "proven/test_proven_answer": "proven/part_proof",
         "parts/test_joined_answer": (
             "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"

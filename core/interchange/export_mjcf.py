@@ -26,7 +26,7 @@ from core.multibody.language.connection import Connection, Surroundings, carrier
 from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.forces import AppliedForce, Damper, Spring, Torque, TorsionSpring
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Weld
-from core.multibody.language.scene import Scene
+from core.multibody.language.scene import Scene, at_start
 from core.multibody.language.strings import String
 
 STEP = 0.0005
@@ -57,7 +57,12 @@ def export_mjcf(scene: Scene) -> tuple[str, list[LeftOutOfScene]]:
     """
     # What leaves the range of doubles is refused where it is written.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        writing = _Writing(NumericScene(scene))
+        first = at_start(scene)
+        writing = _Writing(NumericScene(first))
+        acting = {number for number, _ in first.numbered()}
+        for name, (number, _) in zip(scene.names(), scene.numbered(), strict=True):
+            if number not in acting:
+                writing.leave_out(("connections", number), name, "MJCF has the connections of the start alone")
         return writing.text(), writing.left_out
 
 

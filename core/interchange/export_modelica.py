@@ -53,6 +53,7 @@ def export_modelica(scene: Scene) -> tuple[str, list[LeftOutOfScene]]:
         for name, (i, connection) in zip(scene.names(), scene.numbered(), strict=True)
         for applies, why in (
             (connection.one_sided, "what touches or is taut stays so"),
+            (bool(connection.occasions()), "what begins, ends or strikes has no part in it later"),
             (scene.switches_in(connection), "a formula of several pieces has the piece of the start"),
         )
         if applies

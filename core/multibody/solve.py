@@ -20,7 +20,7 @@ from core.multibody.audit.failure import require
 from core.multibody.audit.nearest import audited_assembly
 from core.multibody.audit.rest import audited_range
 from core.multibody.language.numerals import Numerals
-from core.multibody.language.scene import Scene
+from core.multibody.language.scene import Scene, at_start
 from core.multibody.parts.joined_answer import answered_by_parts
 from core.multibody.phases.phase_answer import THRESHOLDS, answered
 from core.multibody.statics.thresholds import RestOf, range_of_rest
@@ -135,13 +135,13 @@ def solve_scene(
         of_motion = [_of_motion(output, i, scene) for i, output in enumerate(outputs)]
         request = SceneRequest(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget)
         ranges = [
-            range_of_rest(scene, output, ("outputs", i, "thresholds"))
+            range_of_rest(at_start(scene), output, ("outputs", i, "thresholds"))
             for i, output in enumerate(outputs)
             if isinstance(output, RestOf)
         ]
         if scene.assemble is None and budget.audited:
             for found_range in ranges:
-                require(audited_range(scene, found_range))
+                require(audited_range(at_start(scene), found_range))
         try:
             answer = answered_by_parts(found.scene, request, _checked)
         except PlacesDisagree as fault:

@@ -25,6 +25,7 @@ Code = Literal[
     "event-limit",
     "lost-event",
     "formula",
+    "cannot-begin",
 ]
 
 DOCUMENT = "docs/physics/undecided.md"
@@ -146,6 +147,12 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
             "A formula does not say how the motion goes on",
             "A formula has no value beyond the state that is answered last, or either side of the zero on which its "
             "pieces depend leads back to it.",
+        ),
+        UndecidedKind(
+            "cannot-begin",
+            "A connection cannot begin where it should",
+            "At its occasion the bodies are not where the connection could hold them: places that it joins are apart, "
+            "or what it keeps apart overlaps.",
         ),
     )
 }

@@ -168,8 +168,8 @@ class MotionEvent:
     ----------
     kind : str
         Of a described scene "touch", "lift-off", "slip", "stick", "roll", "settle" (bounces end), "taut", "slack",
-        "stop", "release", "end-of-chain", "singular", "switch" (a formula changes its piece), or the code of a problem;
-        of a named scene as it declares.
+        "stop", "release", "end-of-chain", "singular", "switch" (a formula changes its piece), "begin" and "end" of what
+        acts for a time, "impulse", or the code of a problem; of a named scene as it declares.
     name : str
         Of the connection to which it happens; "" where several make a place singular, and where the kind says it.
     time : float
@@ -177,7 +177,8 @@ class MotionEvent:
     error : float
         Of the time (s).
     impulses : mapping of str to float
-        Of an impact: "normal" and "friction" (N s).
+        Of an impact: "normal" and "friction" (N s). Of a blow its components; of that and of what begins, what
+        connections take, by the names of their forces.
     energy_loss : float
         Of an impact, by this connection (J); of several at one time they add up to what is lost.
     errors : ImpactErrors

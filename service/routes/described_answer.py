@@ -138,18 +138,19 @@ class EndEvent(View):
 
     kind: str = Field(
         description="touch, lift-off, slip, stick, roll, settle (bounces accumulate and end) of contacts; taut and "
-        "slack of strings; stop and release of turns; singular: a length has become zero, or connections lose their "
-        "hold; or the code of a problem."
+        "slack of strings; stop and release of turns; switch of a formula; begin and end of what acts for a time; "
+        "impulse; singular: a length has become zero, or connections lose their hold; or the code of a problem."
     )
     name: str = Field(description="Of the connection; empty where several make a place singular.")
     time: Seconds[float]
     error: Seconds[float]
     impulses: dict[str, Annotated[float, Unit("N s")]] = Field(
-        description="Of an impact: normal (of a stop, N m s), and friction where there is some."
+        description="Of an impact: normal (of a stop, N m s), and friction where there is some. Of a blow its "
+        "components, and of that and of what begins to hold what connections take, by the names of their forces."
     )
     energy_loss: Joules[float] = Field(
         description="Of an impact, by this connection: impulse times mean rate. Those of one time add up to what is "
-        "lost; one of them may be negative."
+        "lost; one of them may be negative. Below zero where a blow brings energy."
     )
     errors: ImpactErrors = Field(description="Of impulses and energy loss; that of the time is in error.")
     rates: dict[str, ImpactRates] = Field(

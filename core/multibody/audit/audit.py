@@ -10,7 +10,7 @@ R. M. McConnell, K. Mehlhorn, S. Näher, P. Schweitzer, "Certifying algorithms",
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.balanced import Accelerated, check_balance, joined_accelerations
 from core.multibody.audit.chosen_times import generator, largest_rates, quickness, rows_of, windows
 from core.multibody.audit.claims import check_claims
-from core.multibody.audit.definitions import Description, description_of
+from core.multibody.audit.definitions import Description
 from core.multibody.audit.energy import Energies, potential_error
 from core.multibody.audit.equilibria import check_equilibria
 from core.multibody.audit.failure import ROUNDING, Ledger, Verdict
@@ -29,15 +29,13 @@ from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, c
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import LARGEST, Numbers, Placement, Pose, Twist, moved
 from core.multibody.audit.repetition import check_repetition, times_of_period
-from core.multibody.audit.samples import Columns, Part, Samples, joined, samples_of
+from core.multibody.audit.samples import Part, Samples, joined, samples_of
 from core.multibody.audit.searches import SearchedQuantities
+from core.multibody.audit.stages import Sampler, Stage, stages_of
 from core.multibody.audit.start import AfterStart, accelerations_of, check_forces, check_places, forces_of, unsure_of
 from core.multibody.audit.totals import check_paths, check_totals, check_works, with_totals
 from core.multibody.audit.windows import NODES, check_windows, nodes
 from core.multibody.language.scene import Scene
-
-Sampler = Callable[[Numbers, bool], Columns]
-"""From times, and whether forces are wanted, to the columns of the motion that was answered."""
 
 MEANT = 1e-6
 """Relative mismatch of positions up to which rounded figures are taken to be meant as the connections say."""
@@ -60,15 +58,18 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
         Those of the question.
     """
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        description = description_of(scene, answered=answer.phases[0].states if answer.phases else None)
         if answer.phases == ():
             return Verdict()
-        if not description.moderate:
-            return Verdict(compared=False)
-        found = _Audit(description, answer, times).verdict(sampler, Ledger(ROUNDING))
-        if found.failure is not None and _was_rounded(description, answer):
-            found = _Audit(description, answer, times).verdict(sampler, Ledger(MEANT))
-        return found
+        verdict = Verdict()
+        for stage in stages_of(scene, answer, sampler):
+            if not stage.description.moderate:
+                return Verdict(compared=False)
+            verdict = _Audit(stage, times).verdict(sampler, Ledger(ROUNDING))
+            if verdict.failure is not None and _was_rounded(stage.description, answer):
+                verdict = _Audit(stage, times).verdict(sampler, Ledger(MEANT))
+            if verdict.failure is not None:
+                return verdict
+        return verdict
 
 
 class _Audit:
@@ -78,17 +79,22 @@ class _Audit:
     answer. Behind them come the start that the accelerations lead to, a short time before and after.
     """
 
-    def __init__(self, description: Description, answer: SceneSolution, times: Numbers) -> None:
+    def __init__(self, stage: Stage, times: Numbers) -> None:
+        description, answer = stage.description, stage.answer
         self.description, self.answer, self.random = description, answer, generator(description, times)
+        self.stage = stage
         self.latest = max(float(times.max(initial=0.0)), 0.0)
         found = answer.trajectory
         self.own_rows: Part | None = None
-        self.begin = self.end = 0.0
+        self.begin = self.end = stage.begin
         if found is not None and len(found.time):
-            self.begin, self.end = min(float(found.time.min()), 0.0), max(float(found.time.max()), 0.0)
+            if stage.begin == 0.0:
+                self.begin = min(float(found.time.min()), 0.0)
+            self.end = max(min(float(found.time.max()), stage.end), stage.begin)
             if all(f"{name}.velocity" in found.columns for name in description.bodies):
                 rows = rows_of(self.random, len(found.time))
-                self.own_rows = Part(found.time[rows], found.columns, rows)
+                rows = rows[stage.holds(found.time[rows])]
+                self.own_rows = Part(found.time[rows], found.columns, rows) if len(rows) else None
         # A method that a client names computes samples of its own.
         self.own = found is None or found.method == CLOSED_FORM
 
@@ -155,6 +161,9 @@ class _Audit:
                     law, allowed = "equation of the chain at the start", 8.0 * ledger.rounding * rest[1]
                     ledger.compare(law, own.connection.name, start.times, rest[0], allowed)
         self._check_newton(ledger, freedoms, samples, ahead, after, asked, sizes)
+        if asked.beginning is not None:
+            impacts, part = asked.beginning
+            impacts.check(ledger, description, freedoms, samples_of(description, [part]))
         first = 1 + len(asked.halves) * NODES
         if asked.repeated:
             later = samples.at(slice(first, first + asked.repeated))
@@ -235,7 +244,7 @@ class _Audit:
             placed: list[tuple[float, float]] = []
             searches, impacts, repeated, struck = None, None, np.zeros(0), np.zeros(0)
             if self.own and self.end > self.begin:
-                rated = sampler(np.zeros(1), False) if self.own_rows is None else self.own_rows.columns
+                rated = sampler(np.array([self.stage.begin]), False) if self.own_rows is None else self.own_rows.columns
                 # How quick a motion is need not be known exactly: attitudes of the start do for it.
                 places = {
                     name: Pose(rated[f"{name}.position"].values, body.start.rotation, body.start.turn)
@@ -244,7 +253,7 @@ class _Audit:
                 quick = quickness(description, places, *largest_rates(rated))
                 placed = windows(self.random, answer, self.begin, self.end, quick)
                 if any(event.impulses for event in answer.events):
-                    impacts = Impacts(answer, self.random, quick, self.end)
+                    impacts = Impacts(answer, self.random, quick, (self.stage.begin, self.end))
                     struck = impacts.times
                 if answer.occurrences or answer.extremes:
                     ended = answer.ended
@@ -252,13 +261,27 @@ class _Audit:
                     forces = True
             if self.own:
                 repeated = times_of_period(answer)
+            beginning = self._beginning(sampler)
             found = np.zeros(0) if searches is None else searches.times
-            asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), repeated, struck, found])
+            asked = np.concatenate([[self.stage.begin], *(nodes(*one) for one in placed), repeated, struck, found])
             columns, count = sampler(asked, forces), len(asked) - len(found)
             part, whole = Part(asked[:count], columns, slice(0, count)), Part(asked, columns, slice(None))
-            return _Asked(part, whole, [half for _, half in placed], len(repeated), impacts, searches)
+            return _Asked(part, whole, [half for _, half in placed], len(repeated), impacts, searches, beginning)
         except MechanicsError:
             return None
+
+    def _beginning(self, sampler: Sampler) -> tuple[Impacts, Part] | None:
+        """Return what begins and strikes where the stage begins, with samples on either side of that."""
+        begin, found = self.stage.begin, self.answer.trajectory
+        if not (self.own and begin > 0.0 and self.end > begin) or found is None:
+            return None
+        columns = sampler(np.array([begin]), False)
+        places = {name: Pose(columns[f"{name}.position"].values) for name in self.description.bodies}
+        quick = quickness(self.description, places, *largest_rates(columns))
+        impacts = Impacts(self.stage.whole, self.random, quick, (begin, self.end), at_begin=True)
+        if not len(impacts.times):
+            return None
+        return impacts, Part(impacts.times, sampler(impacts.times, False), slice(0, len(impacts.times)))
 
     def _needs_forces(self) -> bool:
         """Return whether forces in time are answered, decide what touches, or belong to what has mass of its own.
@@ -290,6 +313,8 @@ class _Asked:
     impacts : Impacts or None
         Its samples are behind those of the period.
     searches : SearchedQuantities or None
+    beginning : (Impacts, Part) or None
+        What happens where the stage begins, with samples of its own.
     """
 
     part: Part
@@ -298,6 +323,7 @@ class _Asked:
     repeated: int
     impacts: Impacts | None
     searches: SearchedQuantities | None
+    beginning: tuple[Impacts, Part] | None
 
 
 def _spun(description: Description, samples: Samples) -> bool:

@@ -81,6 +81,8 @@ class Reader:
         Numbers in place of those that are written.
     answered : collection of str
         Contacts of which an answer has states.
+    bodies : mapping of str to RigidBody, optional
+        As they are at another time, in place of the start.
 
     Attributes
     ----------
@@ -92,7 +94,11 @@ class Reader:
     """
 
     def __init__(
-        self, scene: Scene, instead: Mapping[Path, float] | None = None, answered: Collection[str] | None = None
+        self,
+        scene: Scene,
+        instead: Mapping[Path, float] | None = None,
+        answered: Collection[str] | None = None,
+        bodies: Mapping[str, RigidBody] | None = None,
     ) -> None:
         self.scene, self.answered, others = scene, answered, {}
         self.moderate = True
@@ -102,7 +108,7 @@ class Reader:
         self.numerals = Numerals.of(scene.let, scene.numbers, instead=others)
         self.dimension = _dimension(scene)
         self.gravity = self.vector((0,) * self.dimension if scene.gravity is None else scene.gravity, ("gravity",))
-        self.bodies = {name: self._body(name) for name in scene.bodies}
+        self.bodies = dict(bodies) if bodies else {name: self._body(name) for name in scene.bodies}
         self.start: Placement = {name: body.start for name, body in self.bodies.items()}
 
     def number(self, value: object, path: Path) -> float:

@@ -78,6 +78,11 @@ class Definition:
         return type(self).gaps is not Definition.gaps
 
     @property
+    def strikes(self) -> bool:
+        """Whether it acts by impulses alone."""
+        return False
+
+    @property
     def lawful(self) -> bool:
         """Whether some of its forces follow from places and rates."""
         return type(self).laws is not Definition.laws

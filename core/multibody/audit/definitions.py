@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from core.multibody.audit import (
+    blows,
     contact_definitions,
     formula_definitions,
     joint_definitions,
@@ -27,6 +28,7 @@ from core.multibody.audit.placement import LARGEST, LEAST, Placement, Undefined
 from core.multibody.language.scene import Scene
 
 FORMS = (
+    blows,
     contact_definitions,
     formula_definitions,
     joint_definitions,
@@ -101,7 +103,10 @@ class Description:
 
 
 def description_of(
-    scene: Scene, instead: Mapping[Path, float] | None = None, answered: Collection[str] | None = None
+    scene: Scene,
+    instead: Mapping[Path, float] | None = None,
+    answered: Collection[str] | None = None,
+    bodies: Mapping[str, RigidBody] | None = None,
 ) -> Description:
     """Return the bodies of a scene and the definitions of its connections.
 
@@ -113,11 +118,13 @@ def description_of(
         Numbers in place of those that are written.
     answered : collection of str, optional
         Contacts of which an answer has states.
+    bodies : mapping of str to RigidBody, optional
+        As they are at another time, in place of the start.
     """
-    reader = Reader(scene, instead, answered)
+    reader = Reader(scene, instead, answered, bodies)
     found: list[Definition] = []
     undefined: dict[str, str] = {}
-    for i, (name, connection) in enumerate(zip(scene.names(), scene.connections, strict=True)):
+    for name, (i, connection) in zip(scene.names(), scene.numbered(), strict=True):
         try:
             found.extend(definition_of(connection, reader, name, ("connections", i)).members)
         except Undefined as missing:

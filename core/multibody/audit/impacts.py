@@ -54,11 +54,22 @@ class Impacts:
     ----------
     quickness : float
         Largest rate of the motion (rad/s).
-    end : float
-        Time up to which there is a motion (s).
+    span : (float, float)
+        Times between which there is a motion (s).
+    at_begin : bool
+        Whether it is what happens where that begins, in the midst of the answer, and nothing else.
     """
 
-    def __init__(self, answer: SceneSolution, random: Random, quickness: float, end: float) -> None:
+    def __init__(
+        self,
+        answer: SceneSolution,
+        random: Random,
+        quickness: float,
+        span: tuple[float, float],
+        *,
+        at_begin: bool = False,
+    ) -> None:
+        begin, end = span
         self.step = NEAR / quickness if quickness > 0.0 else NEAR
         self.groups: list[list[MotionEvent]] = []
         grouped: dict[float, list[MotionEvent]] = defaultdict(list)
@@ -66,12 +77,15 @@ class Impacts:
             grouped[event.time].append(event)
         times = np.array(sorted(grouped))
         for time, events in grouped.items():
-            if not any(event.impulses for event in events) or not 3.0 * self.step < time < end - 3.0 * self.step:
+            first = time if at_begin else begin + 3.0 * self.step
+            if at_begin and not (time == begin and 3.0 * self.step < time):
+                continue
+            if not (at_begin or any(event.impulses for event in events)) or not first <= time < end - 3.0 * self.step:
                 continue
             alone = (np.abs(times - time) < 4.0 * self.step).sum() == 1
             # Times of doubles are too coarse where the step is next to nothing beside them.
             if alone and self.step > 2.0**-26 * time and not _accumulates(answer, time, 4.0 * self.step):
-                self.groups.append([event for event in events if event.impulses])
+                self.groups.append([event for event in events if event.impulses] or events[:1])
         if len(self.groups) > MOST_IMPACTS:
             self.groups = random.sample(self.groups, MOST_IMPACTS)
         steps = self.step * np.array([-1.0, -2.0, -3.0, 1.0, 2.0, 3.0])
@@ -150,7 +164,11 @@ class Impacts:
                         allowed + MARGIN * body.moment * np.abs(twist.spin).reshape(len(times), -1).sum(axis=1) * turned
                     )
         ledger.compare("energy that an impact takes", "", times, energies[0] - energies[1] - loss, allowed)
-        ledger.compare("no gain of energy at an impact", "", times, np.minimum(loss, 0.0), allowed)
+        # A blow brings energy.
+        blown = np.array([any(event.kind == "impulse" for event in group) for group in self.groups])
+        ledger.compare(
+            "no gain of energy at an impact", "", times, np.where(blown, 0.0, np.minimum(loss, 0.0)), allowed
+        )
 
     def _check_rates(
         self, ledger: Ledger, description: Description, sides: tuple[_Side, _Side], known: Numbers
@@ -159,7 +177,9 @@ class Impacts:
         for connection in description.connections:
             for force in connection.gaps(sides[0].placement) if connection.coefficients is not None else ():
                 name = force.rsplit(".", 1)[0]
-                own = [(k, event) for k, group in enumerate(self.groups) for event in group if event.name == name]
+                # What begins or strikes at the same instant changes the rates as well.
+                plain = [(k, group) for k, group in enumerate(self.groups) if all(event.rates for event in group)]
+                own = [(k, event) for k, group in plain for event in group if event.name == name]
                 if not own:
                     continue
                 rows, times = [k for k, _ in own], np.array([event.time for _, event in own])
@@ -178,7 +198,11 @@ class Impacts:
             touch = connection.coefficients
             for force in connection.gaps(sides[0].placement) if touch is not None else ():
                 name = force.rsplit(".", 1)[0]
-                rows = [k for k, group in enumerate(self.groups) if len(group) == 1 and group[0].name == name]
+                rows = [
+                    k
+                    for k, group in enumerate(self.groups)
+                    if len(group) == 1 and group[0].name == name and group[0].rates
+                ]
                 if not rows or touch is None:
                     continue
                 before, after = (
@@ -290,6 +314,8 @@ def _impulses(
             forces = [*connection.efforts(placement, still), *laws]
             impulses.update((force, np.zeros(len(groups))) for force in forces)
         ends.update((force.rsplit(".", 1)[0], force) for force in gaps)
+        if connection.strikes:
+            ends[connection.name] = ""
     for k, group in enumerate(groups):
         for event in group:
             for name, value in event.impulses.items() if event.name in ends else ():

@@ -95,7 +95,7 @@ def _works_are_all(description: Description, names: set[str], *, phased: bool) -
         gaps = connection.gaps(description.start)
         if connection.kind == SpinningFrameDefinition.kind:
             return False
-        if not gaps and (connection.lawful or connection.loads or connection.works()):
+        if not gaps and not connection.strikes and (connection.lawful or connection.loads or connection.works()):
             needed.add(f"{connection.name}{WORK}")
         for force in gaps if phased else ():
             name, touch = force.rsplit(".", 1)[0], connection.coefficients

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import Field, dataclass
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from core.multibody.algebra.polynomials import is_zero
 from core.multibody.language.body import SceneBody
+from core.multibody.language.declared_units import Measured
 from core.multibody.language.numerals import Numerals
-from core.multibody.language.written import Place
+from core.multibody.language.written import Number, Place
 
 Aspect = Literal["turn", "direction", "orientation"]
 """What a connection needs of a body beside its places: its angle, its axes in the plane, its axes in space."""
+
+Moment = Annotated[Number | Mapping[str, Any], Measured("s")]
+"""A time (s), ``{"event": {"kind", "name", "nth"}}`` or ``{"when": {"quantity", "equals", "nth"}}``."""
 
 ATTITUDE: tuple[Aspect, ...] = ("direction", "orientation")
 """The axes of a body, in the plane or in space."""
@@ -91,8 +95,51 @@ class Connection:
         """Return what it needs to know of bodies beside their places: a place of each, as written, and the aspect."""
         return ()
 
+    def occasions(self) -> Mapping[str, object]:
+        """Return when it begins or ends, as it was written, by the fields; nothing of what acts all the time."""
+        return {}
 
-class TwoEnded(Connection):
+    @property
+    def timed(self) -> bool:
+        """Whether it begins or ends."""
+        return False
+
+    @property
+    def starts(self) -> bool:
+        """Whether it acts at the start."""
+        return True
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimedConnection(Connection):
+    """A connection that may begin and end.
+
+    Attributes
+    ----------
+    from_, until : moment, optional
+        Between which it acts; by default from the start, and to the end. What it takes from the start, as a rod its
+        length, is that of its beginning.
+    """
+
+    from_: Moment | None = None
+    until: Moment | None = None
+
+    def occasions(self) -> Mapping[str, object]:
+        """See `Connection.occasions`."""
+        return {name: value for name, value in (("from", self.from_), ("until", self.until)) if value is not None}
+
+    @property
+    def timed(self) -> bool:
+        """See `Connection.timed`."""
+        return self.from_ is not None or self.until is not None
+
+    @property
+    def starts(self) -> bool:
+        """See `Connection.starts`."""
+        return self.from_ is None
+
+
+class TwoEnded(TimedConnection):
     """What is between two places or two bodies."""
 
     a: Place

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, carrier_of
+from core.multibody.language.connection import ATTITUDE, Aspect, Surroundings, TimedConnection, carrier_of
 from core.multibody.language.written import Angle, Place, Ratio, Surface
 
 ImpactLaw = Literal["newton", "poisson", "stronge"]
@@ -17,7 +17,7 @@ Simultaneous = Literal["together", "in order", "undecided"]
 open unless every order has one outcome."""
 
 
-class SurfaceConnection(Connection):
+class SurfaceConnection(TimedConnection):
     """What touches a surface of the ground or of a body: `place` touches `on`, or `a` touches `b`."""
 
     place: Place | None

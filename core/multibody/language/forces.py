@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal
 
-from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, listed
+from core.multibody.language.connection import (
+    ATTITUDE,
+    Aspect,
+    Connection,
+    Moment,
+    Surroundings,
+    TimedConnection,
+    TwoEnded,
+    listed,
+)
 from core.multibody.language.declared_units import Measured
 from core.multibody.language.written import GROUND, Acceleration, Angle, Length, Number, Place, Vector
 
@@ -152,7 +161,7 @@ class SpinningFrame(Connection):
 
 
 @dataclass(frozen=True)
-class AppliedForce(Connection):
+class AppliedForce(TimedConnection):
     """A force on a place (N), whose components are numbers or formulas.
 
     With `in_` "body" they are along the axes of the body, and turn with it.
@@ -178,7 +187,7 @@ class AppliedForce(Connection):
 
 
 @dataclass(frozen=True)
-class Torque(Connection):
+class Torque(TimedConnection):
     """A torque on a body (N m): in the plane a number or formula, in space a vector of them.
 
     In space with `in_` "body" the components are along the axes of the body, and turn with it.
@@ -204,7 +213,7 @@ class Torque(Connection):
 
 
 @dataclass(frozen=True)
-class Field(Connection):
+class Field(TimedConnection):
     """A force (N) or an acceleration (m/s^2) of every body, or of some, by numbers and formulas of its centre."""
 
     acceleration: Acceleration | None = None
@@ -225,3 +234,39 @@ class Field(Connection):
     def formulas(self) -> Iterable[object]:
         """See `Connection.formulas`."""
         return [*listed(self.acceleration), *listed(self.force)]
+
+
+@dataclass(frozen=True)
+class Blow(Connection):
+    """A blow: an impulse on a `place` (N s), or with a `body` in place of it an impulsive torque on that (N m s).
+
+    It falls `at` a time or event, by default at the start. With `in_` "body" its components are along the axes of the
+    body. In the plane that of a body is one number.
+    """
+
+    impulse: Annotated[Number | Vector, Measured("N s", of_turn="N m s")]
+    place: Place | None = None
+    body: str | None = None
+    at: Moment = 0
+    in_: Literal["body"] | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "impulse"
+
+    @property
+    def measure(self) -> str:
+        """What it acts along: a "length" or a "turn", which decides its unit."""
+        return "length" if self.body is None else "turn"
+
+    def places(self) -> Iterable[object]:
+        """See `Connection.places`."""
+        return (self.place, self.body)
+
+    def aspects(self, surroundings: Surroundings) -> Iterable[tuple[object, Aspect]]:
+        """See `Connection.aspects`."""
+        if self.body is not None:
+            return [(self.body, "turn" if surroundings.plane else "orientation")]
+        return [(self.place, aspect) for aspect in ATTITUDE] if self.in_ == "body" else ()
+
+    def occasions(self) -> Mapping[str, object]:
+        """See `Connection.occasions`."""
+        return {"at": self.at}

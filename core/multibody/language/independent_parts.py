@@ -8,9 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from core.errors import InvalidParameter
 from core.multibody.language.connection import Connection
 from core.multibody.language.motion_formulas import references
-from core.multibody.language.scene import Scene, ScenePart
+from core.multibody.language.occasions import named_by
+from core.multibody.language.scene import Scene, ScenePart, part_of
 from core.multibody.language.written import GROUND
 
 
@@ -32,11 +34,21 @@ def independent_parts(scene: Scene) -> Sequence[Scene]:
 
     order = {name: number for number, name in enumerate(scene.bodies)}
     joined: dict[int, list[str]] = {}
+    try:
+        connections = dict(zip(scene.names(), scene.connections, strict=True)) if scene.changes else {}
+    except InvalidParameter:
+        return [scene]
     for number, connection in scene.numbered():
         named = {place.partition(".")[0] for place, _ in references(connection.formulas(), order, scene.let)}
         if connection.everywhere and named:
             return [scene]
         joined[number] = [*_bodies_of(connection), *named]
+        for name in (name for written in connection.occasions().values() for name in named_by(written)):
+            owner = name.partition(".")[0]
+            if owner not in order and owner not in connections:
+                # A quantity of the whole scene, or a fault.
+                return [scene]
+            joined[number] += [owner] if owner in order else _bodies_of(connections[owner])
         if not all(name in order for name in joined[number]):
             return [scene]
         firsts = sorted({first_of(name) for name in joined[number]}, key=order.__getitem__)
@@ -52,23 +64,12 @@ def independent_parts(scene: Scene) -> Sequence[Scene]:
 
 def _part(scene: Scene, bodies: Sequence[str], joined: Mapping[int, Sequence[str]], *, first: bool) -> ScenePart:
     """Return the part with some of the bodies; connections that join no body are faults, which the first part shows."""
-    own = [
-        (number, connection)
+    own = {
+        number
         for number, connection in scene.numbered()
         if (joined[number][0] in bodies if joined[number] else first or connection.everywhere)
-    ]
-    return ScenePart(
-        {name: scene.bodies[name] for name in bodies},
-        tuple(connection for _, connection in own),
-        scene.gravity,
-        scene.let,
-        scene.numbers,
-        scene.assemble,
-        scene.impacts,
-        scene.simultaneous,
-        scene.attitudes,
-        tuple(number for number, _ in own),
-    )
+    }
+    return part_of(scene, own, bodies)
 
 
 def _bodies_of(connection: Connection) -> Iterator[str]:

@@ -7,7 +7,16 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from core.errors import Path
-from core.multibody.language.connection import ATTITUDE, Aspect, Connection, Surroundings, TwoEnded, carrier_of, listed
+from core.multibody.language.connection import (
+    ATTITUDE,
+    Aspect,
+    Connection,
+    Surroundings,
+    TimedConnection,
+    TwoEnded,
+    carrier_of,
+    listed,
+)
 from core.multibody.language.written import GROUND, Angle, Direction, Length, Number, Place, Ratio, Surface, Vector
 
 
@@ -151,7 +160,7 @@ class Rod(TwoEnded):
 
 
 @dataclass(frozen=True)
-class GuideCurve(Connection):
+class GuideCurve(TimedConnection):
     """A place stays on a curve or surface.
 
     `on` is a line ``{at, slope}`` (in space ``{at, direction}``), a circle or sphere ``{at, radius}``, a parabola
@@ -186,7 +195,7 @@ class GuideCurve(Connection):
 
 
 @dataclass(frozen=True)
-class Relation(Connection):
+class Relation(TimedConnection):
     """A formula of places and angles equals a number, or another formula: gears, racks, screws, belts."""
 
     of: str

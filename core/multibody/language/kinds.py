@@ -9,6 +9,7 @@ from core.multibody.language.connection import Connection
 from core.multibody.language.contacts import Contact, Rolling
 from core.multibody.language.forces import (
     AppliedForce,
+    Blow,
     Damper,
     Field,
     Gravitation,
@@ -61,10 +62,8 @@ KINDS: Mapping[str, type[Connection]] = MappingProxyType(
             AppliedForce,
             Torque,
             Field,
+            Blow,
         )
     }
 )
 """The kinds that a description may name."""
-
-NOT_YET = ("impulse",)
-"""Kinds that the language foresees and that no model answers yet."""

@@ -11,7 +11,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.language.body import SceneBody
 from core.multibody.language.connection import Connection
 from core.multibody.language.faults_of_parts import FaultsOfParts
-from core.multibody.language.kinds import KINDS, NOT_YET
+from core.multibody.language.kinds import KINDS
 from core.multibody.language.numerals import member
 from core.multibody.language.scene import Scene, check_size
 from core.near_names import did_you_mean
@@ -58,10 +58,6 @@ def _connection(entry: Any, path: Path, kinds: Mapping[str, type[Connection]]) -
     if not isinstance(entry, Mapping):
         raise InvalidParameter(path, "be an object")
     kind = entry.get("kind")
-    if kind in NOT_YET:
-        raise InvalidParameter(
-            (*path, "kind"), "be a connection that holds, pushes, pulls or drives; blows are not answered yet"
-        )
     if not isinstance(kind, str) or kind not in kinds:
         raise InvalidParameter((*path, "kind"), f"be one of {', '.join(kinds)}", remedy=did_you_mean(kind, kinds))
     rest = {key: value for key, value in entry.items() if key != "kind"}

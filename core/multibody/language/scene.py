@@ -7,8 +7,8 @@ by `core.multibody.language.numerals`; what they mean is checked where the table
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Sized
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping, Sequence, Sized
+from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Literal, get_args
 
@@ -117,6 +117,11 @@ class Scene:
         return any(connection.one_sided for connection in self.connections)
 
     @property
+    def changes(self) -> bool:
+        """Whether connections begin or end, or blows fall."""
+        return any(connection.occasions() for connection in self.connections)
+
+    @property
     def switches(self) -> bool:
         """Whether a formula may have several pieces."""
         return any(map(self.switches_in, self.connections))
@@ -168,6 +173,23 @@ class ScenePart(Scene):
     def numbered(self) -> Iterable[tuple[int, Connection]]:
         """Return the connections, each with its number in the description."""
         return zip(self.numbers_of_connections, self.connections, strict=True)
+
+
+def part_of(scene: Scene, numbers: Collection[int], bodies: Collection[str] | None = None) -> ScenePart:
+    """Return the part of a scene with the connections of some numbers, and some of the bodies or all."""
+    own = [(number, connection) for number, connection in scene.numbered() if number in numbers]
+    given = {entry.name: getattr(scene, entry.name) for entry in fields(Scene)}
+    given["connections"] = tuple(connection for _, connection in own)
+    if bodies is not None:
+        given["bodies"] = {name: scene.bodies[name] for name in bodies}
+    return ScenePart(**given, numbers_of_connections=tuple(number for number, _ in own))
+
+
+def at_start(scene: Scene) -> Scene:
+    """Return a scene with the connections that act at the start, and without blows."""
+    if not scene.changes:
+        return scene
+    return part_of(scene, {number for number, one in scene.numbered() if one.starts and "at" not in one.occasions()})
 
 
 def _unlike(name: str, others: set[str]) -> str:

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
-from core.multibody.language.connection import Aspect, Connection, Surroundings, listed
+from core.multibody.language.connection import Aspect, Connection, Surroundings, TimedConnection, listed
 from core.multibody.language.declared_units import Measured
 from core.multibody.language.written import Length, Number, Place, Ratio
 
 
 @dataclass(frozen=True)
-class String(Connection):
+class String(TimedConnection):
     """An inextensible string through places and over drums; a drum without slip divides it.
 
     It is taut at the start unless it is longer than its way. `restitution` is that of the jerk when it becomes taut;

@@ -198,8 +198,8 @@ class PhaseMotion:
 
     @property
     def smooth(self) -> bool:
-        """Whether nothing is unilateral or in pieces: there is one phase, which a method may compute as well."""
-        return not self.unilateral and not switching(self.base.measures.table.laws)
+        """Whether nothing is unilateral, in pieces, or begins and ends: a method may compute the one phase as well."""
+        return not self.unilateral and not switching(self.base.measures.table.laws) and not self.base.scene.changes
 
 
 def phase_of(

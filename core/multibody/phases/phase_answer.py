@@ -102,7 +102,7 @@ def _equations(scene: Scene, motion: PhaseMotion, request: SceneRequest) -> Scen
 def _motion_of(scene: Scene, request: SceneRequest) -> PhaseMotion:
     """Return the motion of a scene: through events where something is unilateral, or a string is slack at times."""
     passes = request.method is None and scene.continues
-    if scene.one_sided or (passes and scene.switches and "equilibria" not in request.outputs):
+    if scene.one_sided or scene.changes or (passes and scene.switches and "equilibria" not in request.outputs):
         return _in_phases(scene, request)
     try:
         found = modelled(scene)

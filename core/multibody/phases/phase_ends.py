@@ -27,8 +27,9 @@ from core.multibody.reduction.least_places import turns_back_at_zero
 from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.followed import Found
-from core.multibody.search.location import NotLocated, located, state_at
+from core.multibody.search.location import NotLocated, located, state_after, state_at
 from core.multibody.search.pieces import Expanded, ExpandedWhole, repeats_after
+from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described
 from core.multibody.table.table import Row
 from core.multibody.trajectory.events import follows, runs_of
@@ -74,11 +75,34 @@ class Undecided(Exception):
         self.graze = graze
 
 
-def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) -> list[Crossing]:
+def state_at_time(phase: Phase, time: Ball) -> list[Crossing]:
+    """Return the end of a phase at a time from the start of the scene, which nothing in the motion tells."""
+    watch, found = Watch(-1, "time", Unilateral("", {})), list[Crossing]()
+    if phase.uniform:
+        for track, exact in zip(phase.tracks, phase.exact_motions, strict=True):
+            late = time - track.time
+            found.append(Crossing(late, watch, *exact.state(late)))
+        return found
+    motions = expansions_of(phase).places
+    tracks = phase.tracks if len(phase.tracks) == len(motions) else phase.tracks * len(motions)
+    for track, motion in zip(tracks, motions, strict=True):
+        late = time - track.time
+        found.append(Crossing(late, watch, *state_after(motion, late)))
+    return found if len(found) > 1 else found * 2
+
+
+def crossings_of(
+    base: Described, phase: Phase, left: Ball, noticed: list[str], passages: Sequence[Watch] = ()
+) -> list[Crossing]:
     """Return the first crossing of a phase within the time that is left, none where nothing ends it.
 
     There is one for each track, and two where the motion was exact and is so no more. What only grazes zero before is
     added to what is noticed.
+
+    Parameters
+    ----------
+    passages : sequence of Watch
+        Quantities that may pass through values.
 
     Raises
     ------
@@ -94,6 +118,7 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
         *watches(phase.unilateral, phase.states, phase.tables[0], phase.openings, of_forces=not in_closed_form),
         *switches(phase.arguments, phase.tables[0].table),
         *lengths(phase.models[0].whole.limits),
+        *passages,
     ]
     found = _crossings(base, phase, watched, left, noticed)
     gone = next((watch.one.name for watch in watched if watch.what == "length" and _is_gone(phase, watch, found)), None)

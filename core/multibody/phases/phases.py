@@ -14,8 +14,8 @@ from dataclasses import replace
 
 from flint import arb
 
-from core.balls import distance_bound, precision
-from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
+from core.balls import as_text, distance_bound, precision
+from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable, PlacesDisagree
 from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero
 from core.multibody.contacts.complementarity import Decided, decided
 from core.multibody.contacts.conditions_of_states import LOOKED
@@ -29,19 +29,22 @@ from core.multibody.equations.packed import nearest
 from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
+from core.multibody.phases.changed_connections import Change, changed
 from core.multibody.phases.formula_ends import what_ends
 from core.multibody.phases.level_phases import rim_that_tips, undecided_spin
 from core.multibody.phases.openings import openings
 from core.multibody.phases.passing_touch import without_passing_touch
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
-from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
+from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of, state_at_time
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
+from core.multibody.phases.schedule import Entry, Schedule
 from core.multibody.phases.slow_bounces import NEAR, SLOW, may_strike, rate_share, slowness, stopped_share, time_left
 from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import Tracks
 from core.multibody.phases.turning_slip import begins_at_once, turns
+from core.multibody.phases.watches import Watch
 from core.multibody.table.connection_effects import Unilateral
-from core.multibody.table.description import Described, described
+from core.multibody.table.description import Acting, Described, described
 from core.multibody.table.facing import facing, is_on_a_corner
 from core.multibody.table.law_pieces import Argument, Key, switching
 from core.multibody.table.table import Table
@@ -97,6 +100,9 @@ class _Run:
         self.states = [State.OPEN] * len(self.unilateral)
         self.decided = Decided(self.states, list(self.unilateral))
         self.described, self.arguments = base, dict[Key, Argument]()
+        self.schedule = Schedule.of(base)
+        self.acting: Acting = {name: None for name, one in base.measures.timed.items() if one.acts}
+        self.passages: list[tuple[Entry, Watch]] = []
         self.turning: list[str] = []
         # What struck together last, and how often in turn.
         self.bounced: tuple[tuple[int, ...], int] = (), 0
@@ -114,22 +120,30 @@ class _Run:
         self.motion.fastest = {"m/s": self.tracks.fastest("m"), "rad/s": self.tracks.fastest("rad")}
 
     def _follow(self) -> None:
-        still, last = 0, -1.0
-        while True:
-            known = len(self.motion.events)
+        still, last, known = 0, -1.0, 0
+        while self.motion.ended is None:
             if not self._collide():
                 return
+            if self._changes():
+                continue
             problem = self._decide(known)
             if problem is not None:
                 self._stop(problem)
                 return
+            if self._changes():
+                continue
             opening = openings(self.base.measures.table, self.decided, self.touching, *self.tracks.wide())
             phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start, opening)
             phase.arguments = tuple(self.arguments.values())
             if self._ends_at_a_rim(phase):
                 return
+            self.passages = list(self.schedule.passages(phase))
+            if self._changes():
+                continue
             self.motion.phases.append(phase)
+            known = len(self.motion.events)
             if self._accumulate(phase):
+                known = len(self.motion.events)
                 continue
             try:
                 if not self._advance(phase):
@@ -149,6 +163,45 @@ class _Run:
                 decided_by = "another question, from the state that is answered last"
                 self._stop(Problem("event-limit", explanation, (), decided_by=decided_by))
                 return
+
+    def _changes(self) -> bool:
+        """Let begin, end and strike what does so now; return whether there is any of that."""
+        due = self.schedule.due(self.tracks.time, self.motion.events)
+        if not due:
+            return False
+        try:
+            change = changed(self.described, self.acting, due, self.tracks)
+            begun = self._with_changed_measures(change)
+        except InvalidParameter as fault:
+            if not self.motion.phases:
+                raise
+            names = tuple(entry.name for entry in due)
+            explanation = f"{', '.join(names)} cannot begin here: a number would have to {fault.rule}"
+            decided_by = "places at which it can begin, or another occasion"
+            self._stop(Problem("cannot-begin", explanation, names, decided_by=decided_by))
+            return True
+        self.base = self.described = change.base
+        self.acting, self.tracks.each, self.bounced = change.acting, change.each, ((), 0)
+        self.touching = begun
+        self.motion.events.extend(change.events)
+        sudden = [(name, work) for name, work in change.works.items() if not is_zero(work)]
+        self.motion.impacts.extend((len(self.motion.phases), name, work) for name, work in sudden)
+        return True
+
+    def _with_changed_measures(self, change: Change) -> list[int]:
+        """Take up the measures of connections that begin or end; return what touches then."""
+        measures, touching = change.base.measures, set(self.touching)
+        self.unilateral, self.states = list(self.unilateral), list(self.states)
+        q = change.each[0].q
+        for name in change.names:
+            for i in measures.timed[name].unilateral:
+                one = measures.unilateral[i]
+                gap = evaluated(one.gap, q)
+                if not is_zero(gap) and gap < 0:
+                    raise PlacesDisagree((), f'be apart: "{one.name}" is missed by {as_text(-gap, 3)}')
+                self.unilateral[i], self.states[i] = one, State.OPEN
+                touching = touching | {i} if is_zero(gap) else touching - {i}
+        return sorted(touching)
 
     def _ends_at_a_rim(self, phase: Phase) -> bool:
         """End the motion where places of a level rim do not stand for it any more; return whether that is so."""
@@ -405,11 +458,13 @@ class _Run:
 
     def _advance(self, phase: Phase) -> bool:
         """Go to the end of a phase; return whether anything comes after it."""
-        left = self.end - phase.start
+        end = self.schedule.until(self.end)
+        left = end - phase.start
         if not left > 0:
             return False
         try:
-            crossings = crossings_of(self.base, phase, left, self.motion.noticed)
+            watches = [watch for _, watch in self.passages]
+            crossings = crossings_of(self.base, phase, left, self.motion.noticed, watches)
         except Undecided as undecided:
             phase.end = phase.start + undecided.graze.time
             self.tracks.each = [replace(track, time=phase.end) for track in self.tracks.each]
@@ -432,8 +487,12 @@ class _Run:
             self.motion.ended = MotionEvent(kind, name, nearest(phase.end), self.tracks.late() + place.error)
             self.motion.events.append(self.motion.ended)
             return False
-        if not crossings:
+        if not crossings and end is self.end:
             return False
+        crossings = crossings or state_at_time(phase, end)
+        for entry, watch in self.passages:
+            if crossings[0].watch is watch:
+                entry.passages, entry.side = entry.passages + 1, -entry.side
         first, tracks = crossings[0], self.tracks
         tracks.follow_scales(float(first.time), phase.tracks[0].q, first.q, phase.models[0].whole.acceleration)
         before = phase.tracks if len(phase.tracks) == len(crossings) else phase.tracks * len(crossings)
@@ -472,7 +531,12 @@ class _Run:
         few = len(self.motion.events) >= MANY or rate_share(self.unilateral[group[0]], self.tracks) < SMALL
         listed = count >= (LATER_LISTED if few else LISTED)
         found = recurring(self.unilateral, group, phase, self.tracks, self.end, listed=listed)
-        if found is None or not all(found.tail.keeps_sign(one.law, one.sign) for one in phase.arguments if one.sign):
+        if found is None or self.schedule.forbids([self.unilateral[i].name for i in group]):
+            return False
+        until = self.schedule.until(self.end)
+        if until is not self.end and not phase.start + found.tail.length < until:
+            return False
+        if not all(found.tail.keeps_sign(one.law, one.sign) for one in phase.arguments if one.sign):
             return False
         phase.end = phase.start + found.tail.length
         phase.settles = tuple(self.unilateral[i].name for i in group)

@@ -105,16 +105,22 @@ class Sums:
         for one in self.motion.unilateral:
             found |= {f"{one.name}.{FRICTION}": self._sum()} if one.slip is not None else {}
             found[f"{one.name}.{IMPACTS}"] = self._sum()
+        # What begins and strikes takes or brings energy at its own times alone.
+        sudden = {f"{name}.{IMPACTS}" for _, name, _ in self.motion.impacts} - found.keys()
+        found |= {name: self._sum() for name in sorted(sudden)}
         unknown: set[str] = set()
         phase = -1
+        timed = {k for one in measures.timed.values() for k in one.works}
         for number, piece in enumerate(self.pieces):
             if piece.number != phase:
                 phase = piece.number
                 self._impacts(found, unknown, phase)
-            for work in measures.works:
+            for name in sudden:
+                self._put(found[name], *_nothing(*self._local(number, piece)))
+            for k, work in enumerate(piece.whole.measures.works):
                 name = f"{work.name}.work"
                 if work.potential is not None:
-                    self._by_potential(found[name], number, piece, work)
+                    self._by_potential(found[name], number, piece, work, carried=k in timed)
                 else:
                     self._integrate(found[name], number, piece, _sized(power_of(piece.whole, work)))
             for i, one in enumerate(piece.phase.unilateral):
@@ -186,20 +192,24 @@ class Sums:
             self._smooth[number, parts, end] = found
         return self._smooth[number, parts, end]
 
-    def _by_potential(self, one: _Sum, number: int, piece: Stretch, work: WorkTerm) -> None:
+    def _by_potential(self, one: _Sum, number: int, piece: Stretch, work: WorkTerm, *, carried: bool) -> None:
+        """Add the fall of a potential: since the start of the scene, or where it begins and ends, of the stretch."""
         mine, times = self._local(number, piece)
-        states = piece.states(times)
+        potential, states = work.potential or {}, piece.states(times)
         start = np.array([pair(x, 0) for x in self.motion.phases[0].tracks[0].q])
-        done, size = work_of_potential(work.potential or {}, start, states.q)
+        if carried:
+            start = piece.states(np.zeros(1)).q[0]
+        done, size = work_of_potential(potential, start, states.q)
         other = states.q.copy()
         # The first double of a pair would swallow an error smaller than its rounding.
         other[..., 1] += states.q_error
-        moved = np.abs(work_of_potential(work.potential or {}, start, other)[0] - done)
+        moved = np.abs(work_of_potential(potential, start, other)[0] - done)
         if states.reference is not None:
-            by_reference = work_of_potential(work.potential or {}, start, states.reference[0])[0]
+            by_reference = work_of_potential(potential, start, states.reference[0])[0]
             moved = np.maximum(moved, _MARGIN * np.abs(by_reference - done))
-        # It is a function of the place: nothing is carried over.
-        one.carried, one.error = 0.0, 0.0
+        if not carried:
+            # It is a function of the place.
+            one.carried, one.error = 0.0, 0.0
         self._put(one, mine, done, _SMALL * size + moved)
 
     def _impacts(self, found: dict[str, _Sum], unknown: set[str], phase: int) -> None:

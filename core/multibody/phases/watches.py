@@ -16,12 +16,29 @@ from core.multibody.equations.starting_pieces import series_of
 from core.multibody.language.switches import ends_of_domain
 from core.multibody.laws.law import Law
 from core.multibody.phases.uniform_pieces import polynomial_of
+from core.multibody.search.bands import Quantity
 from core.multibody.search.curves import Curve
 from core.multibody.search.first_of_motion import Watched
 from core.multibody.search.pieces import Pieces
 from core.multibody.table.connection_effects import Limit, Unilateral
 from core.multibody.table.law_pieces import Argument
 from core.multibody.table.table import Table
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A quantity that passes through a value.
+
+    Attributes
+    ----------
+    along : callable
+        The quantity less the value, along a motion in pieces.
+    of_forces : bool
+        Whether it depends on multipliers.
+    """
+
+    along: Quantity
+    of_forces: bool
 
 
 @dataclass(frozen=True)
@@ -32,27 +49,33 @@ class Watch:
     ----------
     number : int
         Of the unilateral measure.
-    what : {"gap", "push", "grip", "slip", "length", "region", "switch"}
+    what : {"gap", "push", "grip", "slip", "length", "region", "switch", "value", "time"}
         A length is that of a part of a string, a spring or another line: where it is zero, the motion ends. A region is
-        that in which a corner meets a facet of another shape, a switch the argument of a formula of several pieces.
+        that in which a corner meets a facet of another shape, a switch the argument of a formula of several pieces, a
+        value one through which a quantity passes, and a time one that is known beforehand.
     admissible : AdmissibleForce or None
         What has to be positive, for "push" and "grip".
     argument : Law or None
         Of a switch.
     power : int or None
         Of time with which a gap opens at the start of the phase, where that is known; zero where it is open.
+    passage : Passage or None
+        Of a value.
     """
 
     number: int
-    what: Literal["gap", "push", "grip", "slip", "length", "region", "switch"]
+    what: Literal["gap", "push", "grip", "slip", "length", "region", "switch", "value", "time"]
     one: Unilateral
     sense: int = 1
     admissible: AdmissibleForce | None = None
     argument: Law | None = None
     power: int | None = None
+    passage: Passage | None = None
 
     def series(self, motion: Expansion) -> Series | None:
-        """Return it along a motion with constant accelerations; None of a formula that is no polynomial."""
+        """Return it along a motion with constant accelerations; None of a value, and of what is no polynomial."""
+        if self.passage is not None:
+            return None
         if self.what in ("gap", "length", "region"):
             return motion.of(self.one.gap)
         if self.argument is not None:
@@ -67,7 +90,8 @@ class Watch:
     def watched(self) -> Watched:
         """What a search has to know of it."""
         jumps, length = self.what in ("gap", "length"), self.what == "length"
-        return Watched(self.along, self.admissible is not None, jumps, length, self.power)
+        of_forces = self.admissible is not None or (self.passage is not None and self.passage.of_forces)
+        return Watched(self.along, of_forces, jumps, length, self.power)
 
     def along(self, pieces: Pieces) -> Curve:
         """Return it along a motion in pieces."""
@@ -75,6 +99,8 @@ class Watch:
             return pieces.of(self.one.gap)
         if self.argument is not None:
             return pieces.nothing().plus(self.sense * ONE, pieces.law(self.argument))
+        if self.passage is not None:
+            return pieces.nothing().plus(self.sense * ONE, self.passage.along(pieces))
         if self.what == "slip":
             return pieces.nothing().plus(self.sense * ONE, pieces.of_rates(self.one.slip or {}))
         assert self.admissible is not None

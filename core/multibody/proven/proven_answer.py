@@ -65,14 +65,20 @@ def proven_answer(
     InvalidParameter
         For a scene that cannot be.
     NotApplicable
-        For contacts; for positions or velocities that meet the connections only to rounding; for connections that
-        depend on one another.
+        For contacts, and what begins, ends or strikes; for positions or velocities that meet the connections only to
+        rounding; for connections that depend on one another.
     BudgetExceeded
         For a motion that is longer than can be proven.
     SelfCheckFailed
         Where the answer that was found does not keep the laws of mechanics: see `core.multibody.audit`.
     """
     check_digits(digits, 8 * len(scene.bodies) * max(1, len(times)))
+    if scene.changes:
+        raise NotApplicable(
+            "connections that begin or end, and blows, are answered with the digits of doubles",
+            path=("connections",),
+            remedy="ask POST /v1/scenes",
+        )
     if scene.one_sided:
         raise NotApplicable(
             "contacts are decided with the digits of their own set-up, and no more are proven",

@@ -80,6 +80,15 @@ def state_at(motion: Expanded, time: float, reach: float) -> tuple[list[Ball], l
     return found.q, found.v
 
 
+def state_after(motion: Expanded, time: Ball) -> tuple[list[Ball], list[Ball]]:
+    """Return coordinates and rates at a time that no double need be."""
+    near = float(time)
+    pieces = motion(np.array([near]), np.array([near]))
+    high = float((time - near).mid()) / float(pieces.lengths[0])
+    found = _state(pieces, near, high, 0.0, 0.0)
+    return found.q, found.v
+
+
 def _newton(curve: Floats, share: float) -> tuple[float, float]:
     th, tl = share, 0.0
     size = float(np.max(np.abs(curve[:, 0])))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -225,3 +225,40 @@ class Unilateral:
     def normal(self) -> LinearForm:
         """The gradient of the gap: its rate as a linear form."""
         return gradient(self.gap)
+
+
+@dataclass(frozen=True)
+class Timed:
+    """What a connection that begins or ends has in a table.
+
+    Attributes
+    ----------
+    acts : bool
+        Whether it acts at this time.
+    coordinates : range
+        Its own; while it does not act they stay as they are.
+    unilateral, forces, works : range
+        Numbers of its measures, forces and works, which have no effect while it does not act.
+    """
+
+    acts: bool
+    coordinates: range
+    unilateral: range
+    forces: range
+    works: range
+
+
+@dataclass(frozen=True)
+class Push:
+    """What a blow is in a table.
+
+    Attributes
+    ----------
+    momenta : mapping of int to polynomial
+        What it adds to the momenta of coordinates (N s, N m s).
+    components : mapping of str to polynomial
+        The impulse by its components in space.
+    """
+
+    momenta: Mapping[int, Poly]
+    components: Mapping[str, Poly]

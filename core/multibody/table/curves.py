@@ -73,7 +73,7 @@ def on_surface(measures: Measures, name: str, connection: GuideCurve, path: Path
         raise InvalidParameter(where, f"change with {' or '.join(axes)}, and not have one value everywhere")
     missed = evaluated(value, measures.table.q)
     meant = CLOSE * (ONE + change_by(value, measures.table.q, sizes(measures.table, measures.table.q)))
-    if not (measures.sketch or abs(missed) < meant):
+    if not (measures.loose or abs(missed) < meant):
         rule = f"be zero where the place starts, and not {as_text(missed, 10)}"
         raise PlacesDisagree(where, rule, remedy="change it, or move the bodies")
     measures.hold(name, value)
@@ -99,7 +99,7 @@ def on_curve_by_formulas(measures: Measures, name: str, connection: GuideCurve, 
     guesses = _GUESSES
     if on.get("start") is not None:
         guesses = (measures.numerals.number(on["start"], (*path, "on", "start")),)
-    found = _parameter(at, place, guesses, sketch=measures.sketch)
+    found = _parameter(at, place, guesses, sketch=measures.loose)
     if found is None:
         remedy = "move the body, or give a parameter near it as start"
         raise PlacesDisagree(where, "pass through the place at the start, in a direction", remedy=remedy)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from core.errors import Path
-from core.multibody.algebra.polynomials import Poly, is_zero
+from core.multibody.algebra.polynomials import Ball, Poly, is_zero
 from core.multibody.language.connection import Aspect, Surroundings
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.motion_formulas import TURNS, references
@@ -14,6 +14,7 @@ from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.table import (
     attraction,
+    blows,
     chains,
     contact_geometry,
     formula_laws,
@@ -27,13 +28,16 @@ from core.multibody.table import (
 )
 from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.coordinates import Coordinates, dimension_of
+from core.multibody.table.formulas_of_time import clock
 from core.multibody.table.massless_places import balance_massless_places
 from core.multibody.table.measures import Measures
 from core.multibody.table.moving_places import driven_works
 from core.multibody.table.rows import add_rows
+from core.multibody.table.timed import add_timed, needs_clock
 
 FORMS = (
     attraction,
+    blows,
     chains,
     contact_geometry,
     formula_laws,
@@ -47,6 +51,10 @@ FORMS = (
 )
 """The modules with the forms of `add_rows` for the kinds of the catalogue: their import registers them."""
 
+Acting = Mapping[str, Sequence[Ball] | None]
+"""The connections that act at a time, of those that begin or end: the coordinates of the table at their beginning, None
+for that of the start."""
+
 
 @dataclass(frozen=True)
 class Described:
@@ -58,12 +66,18 @@ class Described:
 
 
 def described(
-    scene: Scene, numerals: Numerals | None = None, *, one_sided: bool = False, sketch: bool = False
+    scene: Scene,
+    numerals: Numerals | None = None,
+    *,
+    one_sided: bool = False,
+    sketch: bool = False,
+    acting: Acting | None = None,
 ) -> Described:
     """Return the table of a scene, its numbers read by `numerals` if given; the precision of balls is the caller's.
 
     If it is `one_sided`, strings are no rows but unilateral measures, as contacts are. The places of a `sketch` need
-    not satisfy the connections, and its bodies have the coordinates of their whole orientation.
+    not satisfy the connections, and its bodies have the coordinates of their whole orientation. Of connections that
+    begin or end those that are `acting` have an effect, by default those of the start.
 
     Raises
     ------
@@ -87,14 +101,25 @@ def described(
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
     paths["clock"] = ()
     faults = FaultsOfParts()
-    for name, (i, connection) in zip(names, scene.numbered(), strict=True):
+    numbered = list(zip(names, scene.numbered(), strict=True))
+    timed = [one for one in numbered if one[1][1].timed]
+    if needs_clock([connection for _, (_, connection) in timed], scene.let):
+        clock(measures)
+    for name, (i, connection) in numbered:
         paths[name] = ("connections", i)
+        if connection.timed:
+            continue
         with faults.part():
             first = len(measures.table.rows)
             add_rows(connection, measures, name, ("connections", i))
             driven = list(driven_works(measures, name, first))
             measures.works.extend(driven)
             measures.conservative = measures.conservative and not driven
+    for name, (i, connection) in timed:
+        acts = connection.starts if acting is None else name in acting
+        with faults.part():
+            begun = None if acting is None else acting.get(name)
+            add_timed(connection, measures, name, ("connections", i), begun, acts=acts)
     faults.raised()
     balance_massless_places(measures)
     if "gravity" not in paths:

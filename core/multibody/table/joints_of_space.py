@@ -54,7 +54,7 @@ def universal(connection: Universal, measures: Measures, name: str, path: Path) 
         raise InvalidParameter(where, "be two vectors: one that is fixed in a, and one in b")
     axes = [unit(measures.numerals.vector(axis, (*where, i), 3), (*where, i)) for i, axis in enumerate(connection.axes)]
     off = scalar_product(*axes)
-    if not (measures.sketch or abs(off) < CLOSE):
+    if not (measures.loose or abs(off) < CLOSE):
         raise PlacesDisagree(where, f"be at right angles, unlike two whose cosine is {as_text(off, 4)}")
     measures.coincide(name, a, b, path)
     first, second = (

@@ -125,7 +125,7 @@ def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
     if connection.drive is not None:
         drive = driven(measures, name, connection.drive, (*path, "drive"))
         apart = evaluated(difference(turn, drive), measures.table.q)
-        if not (measures.sketch or abs(apart) < CLOSE):
+        if not (measures.loose or abs(apart) < CLOSE):
             now = as_text(evaluated(turn, measures.table.q), 10)
             rule = f"be {now} rad at the start, as the bodies are turned"
             raise PlacesDisagree((*path, "drive"), rule, remedy="change it, or turn the bodies")

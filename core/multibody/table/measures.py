@@ -25,7 +25,7 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     product,
 )
-from core.multibody.table.connection_effects import Force, Kept, LevelRim, Limit, Unilateral, WorkTerm
+from core.multibody.table.connection_effects import Force, Kept, LevelRim, Limit, Push, Timed, Unilateral, WorkTerm
 from core.multibody.table.coordinates import Coordinates
 from core.multibody.table.frames import Point
 from core.multibody.table.momenta import StateFunction
@@ -51,6 +51,11 @@ class Measures:
 
     def __init__(self, coordinates: Coordinates, *, one_sided: bool = False, sketch: bool = False) -> None:
         self.one_sided, self.sketch = one_sided, sketch
+        # Whether the connection that is added does not act at this time.
+        self.waiting = False
+        # What begins and ends, and blows, by their connections.
+        self.timed: dict[str, Timed] = {}
+        self.blows: dict[str, Push] = {}
         self.unilateral: list[Unilateral] = []
         self.coordinates, self.table = coordinates, coordinates.table
         self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
@@ -71,6 +76,11 @@ class Measures:
         self.functions_of_time: dict[tuple[object, ...], list[int]] = {}
         self._lengths: dict[tuple[str, ...], int] = {}
         self._inverses: dict[int, int] = {}
+
+    @property
+    def loose(self) -> bool:
+        """Whether places need not satisfy the connection that is added: in a sketch, or while that does not act."""
+        return self.sketch or self.waiting
 
     def hold(self, name: str, measure: Poly) -> int:
         """Add a measure that stays zero and return the number of its row."""
@@ -120,7 +130,7 @@ class Measures:
         size, where = evaluated(span, self.table.q), (*path, "length" if drive is None else "drive")
         if not size > 0:
             raise InvalidParameter(where, "be greater than 0 m", remedy="hold the places by a pin")
-        if not self.sketch and not abs(now - size * size) < CLOSE * (now + size * size):
+        if not self.loose and not abs(now - size * size) < CLOSE * (now + size * size):
             raise PlacesDisagree(
                 where,
                 f"be {float(now.sqrt()):.10g} m, as the places are apart at the start",
@@ -151,6 +161,14 @@ class Measures:
         self.limits.append(Limit("singular", name, length=coordinate(index)))
         self._lengths[key] = index
         return index
+
+    def shared(self) -> tuple[dict[tuple[str, ...], int], dict[int, int]]:
+        """Return the coordinates that connections share: lengths, and one over lengths."""
+        return dict(self._lengths), dict(self._inverses)
+
+    def restore_shared(self, lengths: dict[tuple[str, ...], int], inverses: dict[int, int]) -> None:
+        """Let no later connection share what has been added since: see `shared`."""
+        self._lengths, self._inverses = lengths, inverses
 
     def inverse(self, name: str, length: int) -> int:
         """Return the coordinate that is one over a length, made once for each."""

@@ -60,7 +60,7 @@ def outlines(measures: Measures, a: Side, b: Side, common: Unilateral, path: Pat
     PlacesDisagree
         Where they overlap at the start, with the depth.
     """
-    if not measures.sketch:
+    if not measures.loose:
         _require_apart(measures, a, b, common.name, path)
     if b.single:
         return list(_against(measures, b, a, common, path))

@@ -104,7 +104,7 @@ def at_most(measures: Measures, part: str, longer: Poly, connection: String, pat
 
 def require_long_enough(measures: Measures, way: Ball, length: Ball, path: Path, field: str = "length") -> None:
     """Raise `PlacesDisagree` where a string is shorter than its way at the start."""
-    if not measures.sketch and way - length > CLOSE * length:
+    if not measures.loose and way - length > CLOSE * length:
         raise PlacesDisagree(
             (*path, field), f"be at least {float(way):.10g} m, the way it goes at the start", remedy="leave it out"
         )

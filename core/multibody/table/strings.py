@@ -100,7 +100,7 @@ def _driven_length(measures: Measures, part: str, way: Ball, connection: String,
         length = measures.table.coordinate(f"{part}.drive", "m", now)
         measures.hold(part, difference(coordinate(length), span))
         return coordinate(length)
-    if not measures.sketch:
+    if not measures.loose:
         require_long_enough(measures, way, now, path, "drive")
         _require_taut(way, now, path, "drive")
     return span

@@ -25,7 +25,7 @@ from core.near_names import near_and_all
 _AXIS = "component of the axis"
 """The name of a component of an axis of a body; no formula can call it."""
 
-_SIGNS = {(0, 1, 2): 1, (1, 2, 0): 1, (2, 0, 1): 1, (0, 2, 1): -1, (2, 1, 0): -1, (1, 0, 2): -1}
+SIGNS = {(0, 1, 2): 1, (1, 2, 0): 1, (2, 0, 1): 1, (0, 2, 1): -1, (2, 1, 0): -1, (1, 0, 2): -1}
 """Of the products of unit vectors: e_i x e_j = sign e_k."""
 
 
@@ -79,7 +79,7 @@ def _constant(measures: Measures, name: str, frame: Frame, vector: Sequence[Ball
     terms: list[tuple[Ball, int, int]] = []
     for axis in frame.axes:
         for i, j, k in permutations(range(3)):
-            half = _SIGNS[i, j, k] * vector[i] / 2
+            half = SIGNS[i, j, k] * vector[i] / 2
             if not is_zero(half):
                 measures.table.add_stiffness(axis[k], axis[j], -half)
                 terms.append((half, axis[j], axis[k]))
@@ -97,7 +97,7 @@ def _by_formulas(connection: Torque, measures: Measures, name: str, frame: Frame
             continue
         along = MotionFormula(Node("*", inner=(formula.root, Node("name", _AXIS))), formula.names | {_AXIS})
         for _, j, k in (order for order in permutations(range(3)) if order[0] == i):
-            half = _SIGNS[i, j, k] * ONE / 2
+            half = SIGNS[i, j, k] * ONE / 2
             # Of space: components j and k of each axis; of the body: of the axes j and k each component.
             pairs = [(axis[j], axis[k]) for axis in frame.axes]
             if connection.in_ == "body":

@@ -1,0 +1,125 @@
+"""The stages of a motion in which connections begin and end: in each the same connections act.
+
+A stage is compared with the connections that act in it. Those that have begun in it take from its start what
+others take from that of the scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from core.errors import MechanicsError
+from core.multibody.answer import SceneSolution
+from core.multibody.audit.bodies import RigidBody
+from core.multibody.audit.definition import Definition
+from core.multibody.audit.definitions import Description, description_of
+from core.multibody.audit.placement import Numbers, Pose
+from core.multibody.audit.samples import Columns, Part, samples_of
+from core.multibody.language.scene import Scene, part_of
+
+Sampler = Callable[[Numbers, bool], Columns]
+"""From times, and whether forces are wanted, to the columns of the motion that was answered."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A time in which the same connections act.
+
+    Attributes
+    ----------
+    description : Description
+        Of the connections that act, with bodies at their places at its start.
+    answer : SceneSolution
+        What is answered of it; accelerations, forces and the energy of the start in the first alone.
+    whole : SceneSolution
+        What is answered of the whole motion.
+    begin, end : float
+        From the start of the scene (s).
+    """
+
+    description: Description
+    answer: SceneSolution
+    whole: SceneSolution
+    begin: float = 0.0
+    end: float = inf
+
+    def holds(self, times: Numbers) -> Numbers:
+        """Return which times are in it; those before the start of the scene are in the first."""
+        found: Numbers = (times < self.end) & ((times >= self.begin) | (self.begin == 0.0))
+        return found
+
+
+def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator[Stage]:
+    """Yield the stages of a motion, of a scene in which nothing begins or ends the whole."""
+    answered = answer.phases[0].states if answer.phases else None
+    if not scene.changes:
+        yield Stage(description_of(scene, answered=answered), answer, answer)
+        return
+    acting = {name for name, one in zip(scene.names(), scene.connections, strict=True) if one.starts}
+    numbers = {name: number for name, (number, _) in zip(scene.names(), scene.numbered(), strict=True)}
+    changes = [event for event in answer.events if event.kind in ("begin", "end")]
+    times = sorted({event.time for event in changes})
+    ends = [*times, inf]
+    known: dict[str, tuple[Definition, ...]] = {}
+    bodies: Mapping[str, RigidBody] | None = None
+    for begin, end in zip([0.0, *times], ends, strict=True):
+        now = [event for event in changes if event.time == begin]
+        acting = (acting | {event.name for event in now if event.kind == "begin"}) - {
+            event.name for event in now if event.kind == "end"
+        }
+        known = {name: own for name, own in known.items() if name in acting}
+        found = description_of(part_of(scene, {numbers[name] for name in acting}), answered=answered, bodies=bodies)
+        members = {name: tuple(one for one in found.connections if one.name.split(".")[0] == name) for name in acting}
+        known = {**members, **known}
+        own = tuple(one for name in scene.names() if name in acting for one in known[name])
+        description = replace(found, connections=own)
+        if begin < end:
+            yield Stage(description, _of_stage(answer, begin, end), answer, begin, end)
+        if end < inf:
+            try:
+                columns = sampler(np.array([end]), False)
+            except MechanicsError:
+                # Where the motion is not known as well as doubles are, what follows is not compared.
+                return
+            start = samples_of(description, [Part(np.array([end]), columns, slice(0, 1))])
+            bodies = {
+                name: replace(body, start=_first(start.placement[name], end), velocity=None)
+                for name, body in found.bodies.items()
+            }
+
+
+def _first(pose: Pose, time: float) -> Pose:
+    position, rotation, turn, _ = pose
+    return Pose(
+        position[0], None if rotation is None else rotation[0], None if turn is None else turn[0], np.array(time)
+    )
+
+
+def _of_stage(answer: SceneSolution, begin: float, end: float) -> SceneSolution:
+    """Return what is answered of a stage; searches are held against the whole motion with the first."""
+    phases = tuple(
+        replace(phase, end=end if phase.end is None and end < inf else phase.end)
+        for phase in answer.phases or ()
+        if begin <= phase.start < end
+    )
+    # What begins the stage happens before its first sample.
+    events = tuple(event for event in answer.events if event.time < end and (event.time > begin or begin == 0.0))
+    found = replace(answer, phases=phases, events=events)
+    if begin == 0.0:
+        searched = "energy.potential"
+        return replace(
+            found,
+            occurrences=None
+            if answer.occurrences is None
+            else tuple(one for one in answer.occurrences if one.quantity != searched),
+            extremes=None
+            if answer.extremes is None
+            else tuple(one for one in answer.extremes if one.quantity != searched),
+        )
+    return replace(
+        found, accelerations=None, forces=None, energy=None, equilibria=None, occurrences=None, extremes=None
+    )

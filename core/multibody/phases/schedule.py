@@ -1,0 +1,160 @@
+"""What begins, ends and strikes in a motion, and whether its occasion has come."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from core.errors import InvalidParameter, Path
+from core.multibody.algebra.polynomials import Ball
+from core.multibody.language.occasions import AtEvent, Event, Occasion, PassedValue, occasion
+from core.multibody.phases.phase import Phase
+from core.multibody.phases.phase_ends import expansions_of
+from core.multibody.phases.watches import Passage, Watch
+from core.multibody.search.first_of_motion import Expansions
+from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.description import Described
+from core.multibody.trajectory.quantities import Sought, sought_in
+
+What = Literal["begin", "end", "impulse"]
+
+KINDS: Mapping[str, What] = {"from": "begin", "until": "end", "at": "impulse"}
+"""What happens at the occasion of each field."""
+
+CLEAR = 2.0**-40
+"""Share of its terms above which a quantity less its value is not what rounding has left of zero."""
+MOST_POWERS = 6
+"""Powers of time by which it is told to which side a quantity leaves a value: as for signs of formulas."""
+
+
+@dataclass
+class Entry:
+    """Something that happens at an occasion.
+
+    Attributes
+    ----------
+    name : str
+        Of the connection.
+    what : {"begin", "end", "impulse"}
+    occasion : Occasion
+    path : Path
+        To the field that says it.
+    passages : int
+        How often its quantity has passed through its value.
+    side : int
+        Sign of the quantity less the value at the end of the last phase; 0 where that is not known.
+    """
+
+    name: str
+    what: What
+    occasion: Occasion
+    path: Path
+    passages: int = 0
+    side: int = 0
+
+
+@dataclass
+class Schedule:
+    """What is still to happen, in the order of the description.
+
+    Attributes
+    ----------
+    entries : list of Entry
+    """
+
+    entries: list[Entry] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, base: Described) -> Schedule:
+        """Return that of a scene.
+
+        Raises
+        ------
+        InvalidParameter
+            For what is no occasion.
+        """
+        names, found = base.scene.names(), list[Entry]()
+        for name, (i, connection) in zip(names, base.scene.numbered(), strict=True):
+            for field_, written in connection.occasions().items():
+                path = ("connections", i, field_)
+                when = occasion(written, base.measures.numerals, names, path)
+                if field_ != "at" and when.time is not None and not when.time > 0:
+                    raise InvalidParameter(path, "be later than the start", remedy="leave it out")
+                found.append(Entry(name, KINDS[field_], when, path))
+        return cls(found)
+
+    def due(self, now: Ball, events: Sequence[Event]) -> list[Entry]:
+        """Return what happens now, and take it off the list; what has not begun does not end."""
+        waiting = {entry.name for entry in self.entries if entry.what == "begin"}
+        found = [
+            entry
+            for entry in self.entries
+            if entry.occasion.has_come(now, events, entry.passages)
+            and not (entry.what == "end" and entry.name in waiting)
+        ]
+        self.entries = [entry for entry in self.entries if entry not in found]
+        return found
+
+    def until(self, end: Ball) -> Ball:
+        """Return the first time at which something is to happen, or an end before that."""
+        times = [time for entry in self.entries if (time := entry.occasion.time) is not None]
+        return min([time for time in times if time < end], key=lambda time: time.mid(), default=end)
+
+    def forbids(self, names: Sequence[str]) -> bool:
+        """Return whether bounces of some measures may not be passed over: something may happen in the midst of them."""
+        return any(
+            entry.occasion.passed is not None
+            or (isinstance(entry.occasion, AtEvent) and any(entry.occasion.counts("touch", name) for name in names))
+            for entry in self.entries
+        )
+
+    def passages(self, phase: Phase) -> Iterator[tuple[Entry, Watch]]:
+        """Yield what is watched in a phase: quantities that have not passed through their values often enough.
+
+        A value that has been jumped over at the start of the phase is counted.
+
+        Raises
+        ------
+        InvalidParameter
+            For a quantity that the scene has not, or whose passing through a value is not told by its sign.
+        """
+        waiting = [entry for entry in self.entries if entry.occasion.passed is not None]
+        if not waiting:
+            return
+        named, expansions = sought_in(phase.models[0].whole, phase.determined), expansions_of(phase)
+        for entry in waiting:
+            passed = entry.occasion.passed
+            assert passed is not None
+            one = named(passed.quantity)
+            if one is None or one.ambiguous:
+                rule = "name a column of the answer, or a component of one, that is no length and no attitude"
+                raise InvalidParameter(passed.path, rule)
+            side, power = _side(one, passed, expansions)
+            if entry.side and side and power == 0 and side != entry.side:
+                entry.passages += 1
+            if not (entry.side and power):
+                entry.side = side or entry.side
+            watch = Watch(
+                -1,
+                "value",
+                Unilateral(entry.name, {}),
+                entry.side,
+                power=power,
+                passage=Passage(one.less(passed.value), one.of_forces),
+            )
+            yield entry, watch
+
+
+def _side(one: Sought, passed: PassedValue, expansions: Expansions) -> tuple[int, int]:
+    """Return the sign of a quantity less its value just after the start of a phase, and the power that tells it."""
+    motions = expansions.forces if one.of_forces else expansions.places
+    pieces = motions[0](np.zeros(1), np.ones(1))
+    curve = one.less(passed.value)(pieces)
+    for k in range(MOST_POWERS):
+        value, size = float(curve.values[0, k, 0]), float(curve.sizes[0, k])
+        if abs(value) > CLEAR * size:
+            return (1 if value > 0.0 else -1), k
+    return 0, 0

@@ -1,0 +1,375 @@
+"""Connections that begin and end, and blows, against textbook solutions.
+
+Sources: L. D. Landau, E. M. Lifshitz, "Mechanics" (1976), section 11 (quadratures); S. T. Thornton, J. B. Marion,
+"Classical Dynamics" (2004), chapters 9 and 11 (ballistic pendulum, centre of percussion).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from core.errors import InvalidParameter, NotApplicable, SelfCheckFailed
+from core.multibody.answer import SceneSolution
+from core.multibody.audit.blows import BlowDefinition
+from core.multibody.language.reading import scene_from
+from core.multibody.phases import changed_connections
+from core.multibody.solve import solve_scene
+from core.systems.trajectory import MotionEvent
+
+COLUMNS = ("trajectory", "forces-in-time", "energy-in-time", "work-in-time")
+
+
+def solved(times: list[float], outputs: tuple[str, ...] = COLUMNS, **description: Any) -> SceneSolution:
+    found = solve_scene(scene_from(description), np.array(times), outputs)  # type: ignore[arg-type]
+    assert found.trajectory is not None
+    return found
+
+
+def column(found: SceneSolution, name: str) -> np.ndarray:
+    assert found.trajectory is not None
+    return found.trajectory.columns[name].values
+
+
+def happened(found: SceneSolution) -> list[tuple[str, str]]:
+    return [(event.kind, event.name) for event in found.events]
+
+
+def event(found: SceneSolution, kind: str) -> MotionEvent:
+    return next(one for one in found.events if one.kind == kind)
+
+
+def test_a_string_breaks_where_its_tension_passes_its_strength() -> None:
+    # T = 3 m g sin(depth angle): 25 N at 1 kg and 10 m/s^2 where the depth is 25/30 of the length.
+    found = solved(
+        [0.2, 1.0],
+        gravity=[0, -10],
+        bodies={"bob": {"mass": 1, "at": [1, 0]}},
+        connections=[
+            {
+                "kind": "string",
+                "name": "cord",
+                "through": ["bob", [0, 0]],
+                "until": {"when": {"quantity": "cord.tension", "equals": 25}},
+            }
+        ],
+    )
+    depth = mpmath.mpf(25) / 30
+    # Time along a circle by the quadrature of the energy, with the depth as s^2 to take the root at its start out.
+    time = mpmath.quad(lambda s: 2 / mpmath.sqrt(20 * (1 - s**4)), [0, mpmath.sqrt(depth)])
+    broken = event(found, "end")
+    assert abs(broken.time - float(time)) <= broken.error + 1e-15
+    late, speed = 1 - time, mpmath.sqrt(20 * depth)
+    x = mpmath.sqrt(1 - depth**2) - speed * depth * late
+    y = -depth - speed * mpmath.sqrt(1 - depth**2) * late - 5 * late**2
+    np.testing.assert_allclose(column(found, "bob.position")[1], [float(x), float(y)], atol=1e-14)
+    assert column(found, "cord.tension")[1] == pytest.approx(0.0, abs=1e-25)
+
+
+def test_a_bullet_stays_in_a_ballistic_pendulum() -> None:
+    found = solved(
+        [0.04, 0.1],
+        gravity=[0, -10],
+        bodies={
+            "block": {"mass": "0.9", "at": [0, -1]},
+            "bullet": {"mass": "0.1", "at": [-1, -1], "velocity": [20, "1/4"]},
+        },
+        connections=[
+            {"kind": "rod", "name": "rod", "a": "block", "b": [0, 0]},
+            {
+                "kind": "weld",
+                "name": "stuck",
+                "a": "bullet",
+                "b": "block",
+                "from": {"when": {"quantity": "bullet.position.x", "equals": 0}},
+            },
+        ],
+    )
+    caught = event(found, "begin")
+    assert caught.time == pytest.approx(0.05, abs=1e-16)
+    # Along the rod the bullet's v_y = 1/4 - 10/20 goes into the rod, m (v_x^2 + v_y^2)/2 - (M + m) (m v_x/(M + m))^2/2.
+    assert caught.energy_loss == pytest.approx(20 + 0.05 * 0.0625 - 2.0, rel=1e-14)
+    assert caught.impulses["rod.force"] == pytest.approx(0.025, rel=1e-13)
+    assert caught.impulses["x"] == pytest.approx(-1.8, rel=1e-14)
+    energy = column(found, "energy.kinetic") + column(found, "energy.potential")
+    # At 0.05 s the bullet is at -1 + 1/80 - 1/80 of height.
+    assert energy[1] == pytest.approx(2.0 - 10.0, rel=1e-14)
+    np.testing.assert_allclose(column(found, "stuck.impacts.work"), [0.0, -caught.energy_loss], rtol=1e-14)
+
+
+def test_a_nail_catches_the_string_of_a_pendulum() -> None:
+    start = mpmath.mpf("0.5")
+    found = solved(
+        [0.3, 1.0],
+        gravity=[0, -10],
+        bodies={"bob": {"mass": 1, "at": ["sin(0.5)", "-cos(0.5)"]}},
+        connections=[
+            {
+                "kind": "rod",
+                "name": "long",
+                "a": "bob",
+                "b": [0, 0],
+                "until": {"when": {"quantity": "bob.position.x", "equals": 0}},
+            },
+            {
+                "kind": "rod",
+                "name": "short",
+                "a": "bob",
+                "b": [0, -0.5],
+                "from": {"event": {"kind": "end", "name": "long"}},
+            },
+        ],
+    )
+    first = mpmath.ellipk(mpmath.sin(start / 2) ** 2) / mpmath.sqrt(10)
+    assert happened(found) == [("end", "long"), ("begin", "short")]
+    assert abs(found.events[0].time - float(first)) <= found.events[0].error + 1e-16
+    # It comes to the height from which it fell: v^2 = 2 g (1 - cos) of both lengths.
+    other = mpmath.acos(1 - 2 * (1 - mpmath.cos(start)))
+    m = mpmath.sin(other / 2) ** 2
+    u = mpmath.sqrt(20) * (1 - first)
+    angle = 2 * mpmath.asin(mpmath.sqrt(m) * mpmath.ellipfun("sn", u, m=m))
+    expected = [-0.5 * float(mpmath.sin(angle)), -0.5 - 0.5 * float(mpmath.cos(angle))]
+    np.testing.assert_allclose(column(found, "bob.position")[1], expected, atol=1e-14)
+
+
+def test_a_spring_that_is_hooked_on_is_unstretched_where_it_begins() -> None:
+    found = solved(
+        [0.5, 1.5, 3.0],
+        bodies={"car": {"mass": 1, "at": [0, 0], "velocity": [1, 0]}},
+        connections=[
+            {"kind": "track", "place": "car", "on": {"at": [0, 0]}},
+            {"kind": "spring", "name": "k", "a": "car", "b": [3, 0], "stiffness": 4, "from": 1, "until": 2},
+        ],
+    )
+    end = 1 + np.sin(2.0) / 2
+    np.testing.assert_allclose(
+        column(found, "car.position")[:, 0], [0.5, 1 + np.sin(1.0) / 2, end + np.cos(2.0)], rtol=1e-14
+    )
+    np.testing.assert_allclose(column(found, "k.force"), [0, -2 * np.sin(1.0), 0], atol=1e-13)
+    # What it had taken up at its end is gone with it.
+    np.testing.assert_allclose(
+        column(found, "k.work"), [0, -(np.sin(1.0) ** 2) / 2, (np.cos(2.0) ** 2 - 1) / 2], atol=1e-13
+    )
+    np.testing.assert_allclose(column(found, "energy.potential"), [0, np.sin(1.0) ** 2 / 2, 0], atol=1e-13)
+
+
+@pytest.mark.parametrize("arm", ["1/6", "0.2"])
+def test_a_hinge_feels_nothing_of_a_blow_at_the_centre_of_percussion(arm: str) -> None:
+    found = solved(
+        [0.25, 1.0],
+        bodies={"rod": {"mass": 1, "inertia": "1/12", "at": [0.5, 0], "places": {"top": [-0.5, 0], "spot": [arm, 0]}}},
+        connections=[
+            {"kind": "pin", "name": "hinge", "a": "rod.top", "b": [0, 0]},
+            {"kind": "impulse", "name": "blow", "place": "rod.spot", "impulse": [0, 2], "at": 0.5},
+        ],
+    )
+    blow, lever = event(found, "impulse"), 0.5 + float(mpmath.mpmathify(arm))
+    rate = 3 * lever * 2
+    assert column(found, "rod.angular_velocity")[1] == pytest.approx(rate, rel=1e-14)
+    assert blow.impulses["y"] == 2.0
+    assert blow.impulses.get("hinge.y", 0.0) == pytest.approx(rate / 2 - 2, abs=1e-14)
+    assert ("hinge.y" in blow.impulses) == (arm != "1/6")
+    assert -blow.energy_loss == pytest.approx(rate**2 / 6, rel=1e-14)
+
+
+def test_a_blow_at_the_start_moves_a_free_rod() -> None:
+    found = solved(
+        [0.0, 1.0],
+        bodies={"rod": {"mass": 1, "inertia": "1/12", "at": [0, 0], "places": {"end": [0.5, 0]}}},
+        connections=[{"kind": "impulse", "name": "kick", "place": "rod.end", "impulse": [0, 2]}],
+    )
+    np.testing.assert_allclose(column(found, "rod.position"), [[0, 0], [0, 2]], atol=1e-14)
+    np.testing.assert_allclose(column(found, "rod.angle"), [0, 12], rtol=1e-14)
+    np.testing.assert_allclose(column(found, "kick.impacts.work"), [8, 8], rtol=1e-14)
+
+
+def test_blows_in_space_act_along_the_axes_of_space_and_of_the_body() -> None:
+    body = {
+        "mass": 2,
+        "moments": [2, 3, 4],
+        "at": [0, 0, 0],
+        "axes": [[0, 1, 0], [-1, 0, 0], [0, 0, 1]],
+        "places": {"e": [1, 0, 0]},
+    }
+    found = solved(
+        [0.0],
+        bodies={"top": body},
+        connections=[
+            {"kind": "impulse", "place": "top.e", "impulse": [0, 0, 4]},
+            {"kind": "impulse", "place": "top.e", "impulse": [0, 8, 0], "in": "body"},
+            {"kind": "impulse", "body": "top", "impulse": [3, 0, 0]},
+            {"kind": "impulse", "body": "top", "impulse": [0, 6, 0], "in": "body"},
+        ],
+    )
+    # The place is at (0, 1, 0): in space the moments are (4, 0, 0), 8 e1 x e2 = (0, 0, 8), (3, 0, 0), (-6, 0, 0).
+    np.testing.assert_allclose(column(found, "top.velocity")[0], [-4, 0, 2], atol=1e-14)
+    np.testing.assert_allclose(column(found, "top.angular_velocity")[0], [0, -1 / 3, 2], atol=1e-14)
+
+
+def test_a_billiard_ball_rolls_at_once_where_it_is_struck_at_two_fifths_of_its_radius() -> None:
+    found = solved(
+        [1.0],
+        gravity=[0, -10],
+        bodies={"ball": {"mass": 1, "inertia": 0.016, "radius": 0.2, "at": [0, 0.2], "places": {"hit": [0, 0.08]}}},
+        connections=[
+            {"kind": "contact", "name": "table", "place": "ball", "on": {"at": [0, 0]}, "friction": 0.3},
+            {"kind": "impulse", "name": "cue", "place": "ball.hit", "impulse": [2, 0]},
+        ],
+    )
+    assert happened(found) == [("impulse", "cue")]
+    assert found.phases is not None
+    assert found.phases[0].states == {"table": "stick"}
+    np.testing.assert_allclose(column(found, "ball.velocity"), [[2, 0]], atol=1e-14)
+
+
+def test_wagons_couple_after_their_impact() -> None:
+    found = solved(
+        [0.6],
+        bodies={
+            "a": {"mass": 1, "radius": 0.1, "at": [0, 0], "velocity": [2, 0]},
+            "b": {"mass": 3, "radius": 0.1, "at": [1, 0]},
+        },
+        connections=[
+            {"kind": "contact", "name": "buffers", "a": "a", "b": "b", "restitution": 0.5},
+            {"kind": "weld", "name": "hook", "a": "a", "b": "b", "from": {"event": {"name": "buffers"}}},
+        ],
+    )
+    assert happened(found) == [("touch", "buffers"), ("begin", "hook")]
+    assert sum(one.energy_loss for one in found.events) == pytest.approx(1.5, rel=1e-14)
+    np.testing.assert_allclose(column(found, "b.velocity"), [[0.5, 0]], rtol=1e-14)
+
+
+def test_a_motor_is_switched_off() -> None:
+    found = solved(
+        [0.5, 2.0],
+        bodies={"wheel": {"mass": 1, "inertia": 0.5, "at": [0, 0]}},
+        connections=[
+            {"kind": "pin", "a": "wheel", "b": [0, 0]},
+            {"kind": "motor", "name": "m", "a": "wheel", "rate": 3, "until": 1},
+            {"kind": "damper", "a": "wheel", "measure": "turn", "coefficient": 0.5},
+        ],
+    )
+    np.testing.assert_allclose(column(found, "wheel.angle"), [1.5, 3 + 3 * (1 - np.exp(-1.0))], rtol=1e-14)
+    np.testing.assert_allclose(column(found, "m.torque"), [1.5, 0], atol=1e-14)
+    np.testing.assert_allclose(column(found, "m.work"), [2.25, 4.5], rtol=1e-14)
+
+
+def test_a_drive_begins_with_the_value_of_its_time() -> None:
+    found = solved(
+        [0.5, 1.5],
+        bodies={"cart": {"mass": 1, "at": [1, 0]}},
+        connections=[
+            {"kind": "slider", "name": "rail", "a": "cart", "b": [0, 0], "drive": "1 + (t - 1)^2", "from": 1},
+        ],
+    )
+    np.testing.assert_allclose(column(found, "cart.position")[:, 0], [1, 1.25], rtol=1e-14)
+    np.testing.assert_allclose(column(found, "rail.drive"), [0, 2], atol=1e-13)
+
+
+def test_the_floor_is_taken_away_at_the_second_bounce() -> None:
+    found = solved(
+        [2.0],
+        gravity=[0, -10],
+        bodies={"ball": {"mass": 1, "at": [0, 1.25]}},
+        connections=[
+            {
+                "kind": "contact",
+                "name": "floor",
+                "place": "ball",
+                "on": {"at": [0, 0]},
+                "restitution": 0.8,
+                "until": {"event": {"kind": "touch", "name": "floor", "nth": 2}},
+            }
+        ],
+    )
+    assert happened(found) == [("touch", "floor"), ("touch", "floor"), ("end", "floor")]
+    late = 2 - 0.5 - 0.8
+    np.testing.assert_allclose(column(found, "ball.position")[0, 1], 0.64 * 5 * late - 5 * late**2 + 0.0, atol=1e-13)
+
+
+def test_bounces_that_end_before_a_blow_are_summed_up() -> None:
+    found = solved(
+        [2.9, 3.1],
+        gravity=[0, -10],
+        bodies={"ball": {"mass": 1, "at": [0, 1]}},
+        connections=[
+            {"kind": "contact", "name": "floor", "place": "ball", "on": {"at": [0, 0]}, "restitution": 0.5},
+            {"kind": "impulse", "name": "kick", "place": "ball", "impulse": [0, 3], "at": 3},
+        ],
+    )
+    assert ("settle", "floor") in happened(found)
+    np.testing.assert_allclose(column(found, "ball.position")[:, 1], [0, 0.25], atol=1e-14)
+
+
+def test_a_connection_that_cannot_begin_ends_the_motion() -> None:
+    found = solved(
+        [0.0, 1.0],
+        gravity=[0, -10],
+        bodies={"ball": {"mass": 1, "at": [0, 1]}},
+        connections=[{"kind": "pin", "name": "hook", "a": "ball", "b": [0, 0.5], "from": 0.1}],
+    )
+    assert found.problem is not None
+    assert found.problem.code == "cannot-begin"
+    assert found.problem.time == pytest.approx(0.1)
+    assert len(column(found, "ball.position")) == 1
+
+
+BOB = {"gravity": [0, -10], "bodies": {"bob": {"mass": 1, "at": [1, 0]}}}
+
+
+def rod_until(moment: Any) -> dict[str, Any]:
+    return {"kind": "rod", "a": "bob", "b": [0, 0], "until": moment}
+
+
+@pytest.mark.parametrize(
+    ("connection", "path", "rule"),
+    [
+        (rod_until(-1), ("until",), "be at least 0 s"),
+        (rod_until(0), ("until",), "be later than the start"),
+        (rod_until({"event": {"name": "rob"}}), ("until", "event", "name"), "name a connection"),
+        (rod_until({"event": {"name": "rod-1", "kind": "tuch"}}), ("until", "event", "kind"), "be one of touch"),
+        (rod_until({"event": {"name": "rod-1", "nth": 0}}), ("until", "event", "nth"), "whole number"),
+        (rod_until({"when": {"quantity": "bob.x", "equals": 0}}), ("until", "when", "quantity"), "name a column"),
+        (rod_until({"when": {"quantity": "bob.position.x"}}), ("until", "when", "equals"), "be given"),
+        (rod_until({"whn": {}}), ("until",), "be a time"),
+        (rod_until({"value": 1, "unit": "m"}), ("until", "unit"), "be a unit of s"),
+        ({"kind": "spinning-frame", "rate": 1, "until": 1}, ("until",), "be left out"),
+        ({"kind": "impulse", "impulse": [0, 1]}, (), "have a place, or a body"),
+        ({"kind": "impulse", "place": "bob", "impulse": [0, 1], "in": "body"}, ("in",), "be left out for a particle"),
+        ({"kind": "impulse", "body": "bob", "impulse": 1}, ("body",), "name a body of the plane that can turn"),
+        ({"kind": "impulse", "place": [0, 0], "impulse": [0, 1]}, ("place",), "belong to a body"),
+    ],
+)
+def test_what_cannot_be_is_refused(connection: dict[str, Any], path: tuple[str, ...], rule: str) -> None:
+    with pytest.raises(InvalidParameter, match=rule) as refused:
+        solved([1.0], connections=[connection], **BOB)
+    assert refused.value.path == ("connections", 0, *path)
+
+
+def test_methods_and_equilibria_are_not_answered_where_connections_change() -> None:
+    scene = scene_from({**BOB, "connections": [{"kind": "rod", "a": "bob", "b": [0, 0], "until": 1}]})
+    with pytest.raises(NotApplicable):
+        solve_scene(scene, np.array([1.0]), ("equilibria",))
+
+
+def test_the_audit_refuses_a_blow_that_is_not_given_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = changed_connections.struck
+
+    def halved(table: Any, pushes: Any) -> Any:
+        found = whole(table, pushes)
+        return changed_connections.Struck(
+            table, [(x + y) / 2 for x, y in zip(table.v, found.v, strict=True)], found.impulses
+        )
+
+    monkeypatch.setattr(changed_connections, "struck", halved)
+    connections = [{"kind": "impulse", "name": "kick", "place": "bob", "impulse": [0, 3], "at": 0.5}]
+    with pytest.raises(SelfCheckFailed, match="momentum at an impact"):
+        solved([1.0], connections=connections, **BOB)
+
+
+def test_a_blow_has_no_force_between_blows() -> None:
+    definition = BlowDefinition("kick", ("bob",), None, turns=True)  # type: ignore[arg-type]
+    assert definition.strikes
