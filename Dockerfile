@@ -25,7 +25,9 @@ FROM python:3.11-slim-bookworm
 RUN useradd --uid 10001 --no-create-home --shell /usr/sbin/nologin polhode && mkdir /data && chown 10001 /data
 COPY --from=build /polhode /polhode
 WORKDIR /polhode
+# Schedulers and workers of a cluster are programs of the environment, which import the service.
 ENV PATH=/polhode/environment/bin:$PATH \
+    PYTHONPATH=/polhode \
     PYTHONDONTWRITEBYTECODE=1 \
     PYTHONUNBUFFERED=1 \
     COMPILED=/polhode/compiled \

@@ -49,6 +49,12 @@ def test_commands_of_the_compose_file_are_run_as_they_are(tmp_path: Path, name: 
         assert {word for word in command if word.startswith("--")} <= known
 
 
+def test_every_command_of_the_image_imports_the_service() -> None:
+    """The program dask has its own folder on its path, not the one that it is run in."""
+    final = stages((ROOT / "Dockerfile").read_text())[-1]
+    assert assignments(final.last("ENV"), {"PATH": ""})["PYTHONPATH"] == final.last("WORKDIR")
+
+
 def test_volumes_are_mounted_where_the_user_of_the_image_may_write() -> None:
     final = stages((ROOT / "Dockerfile").read_text())[-1]
     made = next(argument for instruction, argument in final.steps if instruction == "RUN")
