@@ -11,14 +11,8 @@ from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, ent
 from core.multibody.algebra.rank import independent
 from core.multibody.algebra.square_systems import inverse, times_inverse
 from core.multibody.equations.dynamics import weightless
-from core.multibody.equations.varying_lines import (
-    add_onset,
-    friction_entries,
-    joined,
-    slip_coefficient,
-    slips,
-    varying_entries,
-)
+from core.multibody.equations.onsets_of_slip import Onset, rests
+from core.multibody.equations.varying_lines import friction_entries, joined, varying_entries
 from core.multibody.laws.series import LawSeries, convolved
 from core.multibody.table.table import Table
 
@@ -172,8 +166,8 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     """Return the Taylor coefficients of the motion of a table from its state.
 
     Friction in space turns with the slip s: its line is -mu (s/|s|) times the two lines of the slip, and the series of
-    s/|s| is found to one power with that of s. What begins to slide with an acceleration has s/|s| = (s/t)/|s/t|, whose
-    coefficient of a power depends on that acceleration's: a term of the matrix that is found anew for every power.
+    s/|s| is found to one power with that of s. What begins to slide from rest adds an equation for the friction across
+    the direction in which it begins.
 
     Parameters
     ----------
@@ -203,21 +197,18 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     varying = [varying_entries(table.rows[r].rates, places) for r in chosen]
     pushing = [joined(varying[k], friction_entries(table, table.rows[r], places, rates)) for k, r in enumerate(chosen)]
     laws = LawSeries(table.acting)
-    onsets = [n for n, r in enumerate(chosen) if table.rows[r].slide is not None and not slips(table, table.rows[r])]
+    onsets = [Onset.of(table.rows[r], found[n]) for n, r in enumerate(chosen) if rests(table, table.rows[r])]
+    changes = bool(onsets)
     for k in range(order - 1):
-        if k == 1:
-            onsets = [n for n in onsets if not is_zero(slip_coefficient(table.rows[chosen[n]], rates, 1))]
-        if k > 0 and onsets:
-            matrix = saddle(table, chosen)
-            for n in onsets:
-                add_onset(matrix, table.rows[chosen[n]], found[n][0], rates, k)
-                pushing[n] = joined(varying[n], friction_entries(table, table.rows[chosen[n]], places, rates))
+        if k and changes:
             try:
-                inverted = matrix.inv()
+                inverted = _with_onsets(table, chosen, onsets, k).inv()
             except ZeroDivisionError:
-                # An acceleration of rounding alone: the slip begins with a later power of time.
+                # An acceleration of rounding alone, or nothing that presses: its direction is that of the start.
                 onsets = []
-        right = [ZERO] * (count + len(chosen))
+            changes = any(onset.begins == 1 for onset in onsets)
+        more = len(onsets) if k else 0
+        right = [ZERO] * (count + len(chosen) + more)
         if k == 0:
             for i, x in table.load.items():
                 right[i] = right[i] + x
@@ -235,16 +226,38 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
             for j, series in varying[n].items():
                 total = total + convolved(series.varying(k + 1), rates[j])
             right[count + n] = right[count + n] - (k + 1) * total
+        for n, onset in enumerate(onsets[:more]):
+            drag = onset.drag(k)
+            for j, x in onset.along.items():
+                right[j] = right[j] + x * drag
+            right[count + len(chosen) + n] = onset.slip_across(k)
         solved = times_inverse(inverted, right) if right else []
         for i in range(count):
             places[i].append(solved[i] / ((k + 1) * (k + 2)))
             rates[i].append(solved[i] / (k + 1))
         for n in range(len(chosen)):
             found[n].append(solved[count + n])
+        for n, onset in enumerate(onsets):
+            onset.find(k, solved[count + len(chosen) + n] if k else ZERO, solved)
     multipliers = [[ZERO] * (order - 1) for _ in table.rows]
     for n, r in enumerate(chosen):
         multipliers[r] = found[n]
     return Expansion(places, multipliers)
+
+
+def _with_onsets(table: Table, chosen: Sequence[int], onsets: Sequence[Onset], k: int) -> arb_mat:
+    """Return the saddle with the friction across slips that begin, and what it does to them at order k."""
+    before = saddle(table, chosen)
+    size = before.nrows()
+    found = arb_mat(size + len(onsets), size + len(onsets))
+    for i in range(size):
+        for j in range(size):
+            found[i, j] = before[i, j]
+    for n, onset in enumerate(onsets):
+        for j, x in onset.across.items():
+            found[size + n, j], found[j, size + n] = x, -x
+        found[size + n, size + n] = -onset.compliance(k)
+    return found
 
 
 def leading_sign(series: Sequence[Ball]) -> int:

@@ -31,6 +31,31 @@ FORCES = 4
 """The group of multipliers, whose steps are chosen as those of coordinates; a clock, beyond it, bounds none."""
 
 
+class PackedSlides(NamedTuple):
+    """Friction that turns with its slip; the last axis of arrays of numbers is (value, tail).
+
+    Attributes
+    ----------
+    at : (d, 4)
+        Of each: its row, the first of its entries in `Packed.lines`, its first coordinate in the arrays below, and how
+        many of both there are.
+    coordinates : (c,)
+    along, across : (c, 2)
+        The two constant lines of the slip.
+    factor : (d, 2)
+        The coefficient of friction below zero.
+    finer : int
+        1 where the unit of time is less than that of the scene, for a slip that is about to end.
+    """
+
+    at: Integers
+    coordinates: Integers
+    along: Floats
+    across: Floats
+    factor: Floats
+    finer: int
+
+
 class Packed(NamedTuple):
     """A table for the kernels; the last axis of every array of numbers is (value, tail).
 
@@ -44,7 +69,8 @@ class Packed(NamedTuple):
     gyre, gyre_at : (p, 2) and (p, 3)
         Entries of B.
     lines, lines_at : (e, 2) and (e, 2)
-        Entries of W that are not identically zero: constant part, row and column; after them those of X.
+        Entries of W that are not identically zero: constant part, row and column; after them those of X, of which
+        those that turn with a slip are filled in for every state.
     slopes, slopes_at : (p, 2) and (p, 2)
         Their dependence on the coordinates: factor, entry, coordinate.
     offset : (m, 2)
@@ -56,6 +82,7 @@ class Packed(NamedTuple):
     binds : (e,)
         1 for an entry of W, 0 for one of X.
     laws : PackedLaws
+    slides : PackedSlides
     """
 
     mass: Floats
@@ -76,6 +103,7 @@ class Packed(NamedTuple):
     group: Integers
     binds: Integers
     laws: PackedLaws
+    slides: PackedSlides
 
 
 @dataclass(frozen=True)
@@ -328,11 +356,15 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
     binding = len(lines)
     for number, r in enumerate(chosen):
         row, up = table.rows[r], units.rows[r]
-        for j, poly in row.drag.items():
+        for j, poly in row.drag.items() if row.slide is None else ():
             lines.append(pair(poly.get((), ZERO), s[j] + up))
             lines_at.append((number, j))
             slopes.extend(pair(x, s[j] + s[key[0]] + up) for key, x in poly.items() if key)
             slopes_at.extend((len(lines) - 1, key[0]) for key in poly if key)
+    slides = _packed_slides(table, chosen, units, len(lines))
+    for number, _, first, count in slides.at.tolist():
+        lines.extend([(0.0, 0.0)] * count)
+        lines_at.extend((number, j) for j in slides.coordinates[first : first + count].tolist())
     return Packed(
         mass,
         load,
@@ -352,7 +384,26 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
         np.array([GROUPS[unit] for unit in table.units], dtype=np.int64),
         (np.arange(len(lines)) < binding).astype(np.int64),
         _packed_laws(table, units),
+        slides,
     )
+
+
+def _packed_slides(table: Table, chosen: Sequence[int], units: Units, before: int) -> PackedSlides:
+    """Return the friction of rows chosen that turns with its slip, whose entries follow those before."""
+    at, coordinates, lines, factors = list[tuple[int, ...]](), list[int](), [list[tuple[float, float]](), []], []
+    for number, r in enumerate(chosen):
+        slide = table.rows[r].slide
+        if slide is None:
+            continue
+        factor, along, across = slide
+        own = sorted({*along, *across})
+        at.append((number, before + len(coordinates), len(coordinates), len(own)))
+        factors.append(pair(factor, 0))
+        for line, numbers in zip((along, across), lines, strict=True):
+            numbers.extend(pair(line.get(j, {}).get((), ZERO), units.lengths[j] + units.rows[r]) for j in own)
+        coordinates.extend(own)
+    along, across = map(_numbers, lines)
+    return PackedSlides(_indices(at, 4), np.array(coordinates, dtype=np.int64), along, across, _numbers(factors), 0)
 
 
 def _packed_laws(table: Table, units: Units) -> PackedLaws:

@@ -1,15 +1,13 @@
 """Entries of the lines of W and W + X along a motion whose own coefficients are still being found.
 
-Friction in space turns with the slip s, whose direction is s/|s|. What begins to slide with an acceleration has the
-direction (s/t)/|s/t|, the series of which begins with that acceleration.
+Friction in space turns with the slip s, whose direction is s/|s|. What begins to slide from rest is in
+`core.multibody.equations.onsets_of_slip`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-
-from flint import arb_mat
 
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
 from core.multibody.laws.series import convolved
@@ -20,13 +18,10 @@ Series = list[Ball]
 
 
 class _Turning:
-    """The direction s/|s| of a slip, or of s/t, along a motion whose own coefficients are still being found.
+    """The direction s/|s| of a slip along a motion whose own coefficients are still being found."""
 
-    A coefficient that is not found yet counts as zero.
-    """
-
-    def __init__(self, lines: Sequence[LinearForm], rates: Sequence[Series], late: int = 0) -> None:
-        self._lines, self._rates, self._late = lines, rates, late
+    def __init__(self, lines: Sequence[LinearForm], rates: Sequence[Series]) -> None:
+        self._lines, self._rates = lines, rates
         self._slip: tuple[Series, Series] = ([], [])
         self._size: Series = []
         self.units: tuple[Series, Series] = ([], [])
@@ -36,7 +31,7 @@ class _Turning:
         while len(self._size) <= power:
             k = len(self._size)
             for slip, line in zip(self._slip, self._lines, strict=True):
-                slip.append(_sum_of_rates(line, self._rates, k + self._late))
+                slip.append(sum((poly[()] * self._rates[j][k] for j, poly in line.items()), ZERO))
             square = sum((convolved(s, s) for s in self._slip), ZERO)
             # |s|^2 and s = |s| u, power by power.
             inner = convolved(self._size[1:], self._size[1:])
@@ -77,13 +72,10 @@ def _along(slopes: Sequence[tuple[int, Ball]], places: Sequence[Series], power: 
 
 def friction_entries(table: Table, row: Row, places: Sequence[Series], rates: Sequence[Series]) -> dict[int, Entry]:
     """Return the entries of the line of friction of a row that vary, as far as its slip is known."""
-    if row.slide is None:
-        return varying_entries(row.drag, places)
-    late = 0 if slips(table, row) else 1
-    if late and (len(rates[0]) < 2 or is_zero(slip_coefficient(row, rates, 1))):
+    if row.slide is None or not slips(table, row):
         return varying_entries(row.drag, places)
     factor, along, across = row.slide
-    turning = _Turning((along, across), rates, late)
+    turning = _Turning((along, across), rates)
 
     def rubbed(first: Ball, second: Ball, power: int) -> Ball:
         units = turning.at(power)
@@ -98,35 +90,6 @@ def friction_entries(table: Table, row: Row, places: Sequence[Series], rates: Se
 def slips(table: Table, row: Row) -> bool:
     """Return whether a row with friction that turns has a slip."""
     return any(not is_zero(x) for x in table.slip_of(row))
-
-
-def _sum_of_rates(line: LinearForm, rates: Sequence[Series], power: int) -> Ball:
-    """Return a coefficient of a slip, zero where it is not found yet."""
-    return sum((poly[()] * rates[j][power] for j, poly in line.items() if power < len(rates[j])), ZERO)
-
-
-def slip_coefficient(row: Row, rates: Sequence[Series], power: int) -> Ball:
-    """Return a coefficient of the slip of a row along its first direction."""
-    assert row.slide is not None
-    return _sum_of_rates(row.slide[1], rates, power)
-
-
-def add_onset(matrix: arb_mat, row: Row, push: Ball, rates: Sequence[Series], power: int) -> None:
-    """Add to the matrix of a power of time what friction across a slip that has just begun depends on there.
-
-    It changes by mu N/|s/t| times the coefficient of s/t that is still to be found.
-
-    Parameters
-    ----------
-    push : ball
-        N at the start.
-    """
-    assert row.slide is not None
-    factor, _, across = row.slide
-    share = -factor * push / (abs(slip_coefficient(row, rates, 1)) * (power + 1))
-    for i, x in across.items():
-        for j, y in across.items():
-            matrix[i, j] += share * x[()] * y[()]
 
 
 def joined(first: Mapping[int, Entry], second: Mapping[int, Entry]) -> dict[int, Entry]:

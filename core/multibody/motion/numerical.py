@@ -16,7 +16,7 @@ from core.multibody.equations.packed import Packed, Units, packed, state, two_to
 from core.multibody.motion.lost_rank import KEPT, first_lost, lines_that_may_depend
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.other_rows import rows_for
-from core.multibody.motion.series import DONE, FULL, LOST, STUCK, advance, placed, sampled
+from core.multibody.motion.series import DONE, FULL, LOST, SLOWED, STUCK, advance, placed, sampled
 from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
 from core.multibody.table.table import Table
 
@@ -67,6 +67,8 @@ class Run:
         Times, as pairs, and the end of the last step.
     series : ndarray, shape (s, n, order + 1) or (s, n, order + 1, 2)
     singular : bool
+    slowed : bool
+        Whether a slip that may end is beyond the unit of time.
     room : ndarray or None
         What the series is the first part of, where there is room for more.
     """
@@ -74,6 +76,7 @@ class Run:
     starts: Floats
     series: Floats
     singular: bool = False
+    slowed: bool = False
     room: Floats | None = field(default=None, repr=False)
 
     @property
@@ -89,7 +92,8 @@ class Run:
             room = np.empty((2 * total, *self.series.shape[1:]))
             room[:kept] = self.series[:kept]
         room[kept:total] = more.series
-        return Run(np.concatenate([self.starts[:kept], more.starts]), room[:total], more.singular, room)
+        starts = np.concatenate([self.starts[:kept], more.starts])
+        return Run(starts, room[:total], more.singular, more.slowed, room)
 
     def which(self, times: Floats) -> Integers:
         """Return the step in which each time lies."""
@@ -399,8 +403,9 @@ def run_by(
         # A run of no duration has one step, so that the start can be evaluated.
         single = np.zeros((1, *shape))
         single[0, :, 0], single[0, :, 1] = start
-        return Run(np.array([clock, clock]), single, ended != DONE)
-    return Run(np.concatenate(starts), series[0] if len(series) == 1 else np.concatenate(series), ended != DONE)
+        return Run(np.array([clock, clock]), single, ended not in (DONE, SLOWED), ended == SLOWED)
+    found = series[0] if len(series) == 1 else np.concatenate(series)
+    return Run(np.concatenate(starts), found, ended not in (DONE, SLOWED), ended == SLOWED)
 
 
 def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:
@@ -430,8 +435,14 @@ def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:
     return Run(starts, run.series[: step + 1], singular=True)
 
 
-def evaluate(run: Run, times: Floats) -> tuple[Floats, Floats]:
-    """Return places and rates at times in the units of the arrays, as pairs of shape (t, n, 2)."""
+def evaluate(run: Run, times: Floats, tails: Floats | None = None) -> tuple[Floats, Floats]:
+    """Return places and rates at times in the units of the arrays, as pairs of shape (t, n, 2).
+
+    Parameters
+    ----------
+    tails : ndarray, shape (t,), optional
+        What is left of the times beyond doubles, for a run in pairs.
+    """
     n = run.series.shape[1]
     which = run.which(times)
     q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
@@ -442,5 +453,7 @@ def evaluate(run: Run, times: Floats) -> tuple[Floats, Floats]:
     else:
         paired = np.zeros((len(times), 2))
         paired[:, 0] = times
+        if tails is not None:
+            paired[:, 1] = tails
         sampled_pairs(run.starts, run.series, paired, which, q, v)
     return q, v

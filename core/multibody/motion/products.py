@@ -48,6 +48,8 @@ class Products(NamedTuple):
         Coefficients of the operations of laws, in pairs.
     way : (1,)
         Sign of the times that follow.
+    slips : (d, 6, order + 1, 2)
+        Series of slips with which friction turns, in pairs.
     """
 
     at: Integers
@@ -62,6 +64,7 @@ class Products(NamedTuple):
     inverses: Floats
     laws: Floats
     way: Floats
+    slips: Floats
 
 
 @kernel()
@@ -122,6 +125,7 @@ def products_of(table: Packed, order: int, planes: int) -> Products:
         inverses,
         np.zeros((table.laws.operations.shape[0], order + 1, 2)),
         np.ones(1),
+        np.zeros((table.slides.at.shape[0], 6, order + 1, 2)),
     )
 
 

@@ -29,6 +29,7 @@ from core.multibody.equations.saddle import Saddle, inverted, saddle_space
 from core.multibody.laws.corners import until_corner
 from core.multibody.laws.kernel import values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread, started, summed
+from core.multibody.motion.turning_friction import add_turning
 
 SHORTEST = 1e-12
 """Shortest step, in the table's own unit of time or of the time reached: below it a place is singular."""
@@ -41,9 +42,9 @@ GAP = 10
 SMALLER = 2.0**10
 """How much smaller a coefficient may be than others of a series tell: those of a sine are within this."""
 
-DONE, FULL, SINGULAR, LOST, STUCK = 0, 1, 2, 3, 4
-"""How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles, or
-where a formula does not say how the motion goes on."""
+DONE, FULL, SINGULAR, LOST, STUCK, SLOWED = 0, 1, 2, 3, 4, 5
+"""How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles,
+where a formula does not say how the motion goes on, or where the units of time no longer fit a slip that ends."""
 
 
 @kernel()
@@ -76,6 +77,8 @@ def coefficients(table: Packed, space: Saddle, products: Products, since: int) -
             values_of_laws(table.laws, products.path, size, k, products.way[0], products.laws)
         for p in range(table.laws.push.shape[0]):
             right[table.laws.push_at[p, 0]] += table.laws.push[p, 0] * products.laws[table.laws.push_at[p, 1], k, 0]
+        if table.slides.at.shape[0] > 0:
+            add_turning(table, products, k)
         summed(products, k)
         for p in range(at.shape[0]):
             row = np.uintp(at[p, ROW])

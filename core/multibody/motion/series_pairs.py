@@ -29,11 +29,19 @@ from core.multibody.motion.series import (
     LOST,
     SHORTEST,
     SINGULAR,
+    SLOWED,
     STUCK,
     coefficients,
     lowest_bound,
     step_size,
 )
+from core.multibody.motion.turning_friction import add_turning, least_reach, longest_step, put_friction
+
+SOON, LATE = 2.0**-20, 2.0**20
+"""Times in the units of a table between which a slip could end: below, coefficients of its direction leave the range of
+doubles, and above, in units that were chosen for such a time, those of all else vanish."""
+TURNING = 2.0**20
+"""How much more than that of places the tolerance of rates is that turn with a slip: steps beside its end are short."""
 
 LAST_DIGITS = 43.0
 """Bits of the coefficients of highest order for which doubles suffice: ten less than they have."""
@@ -48,6 +56,16 @@ def entries_of_lines_pairs(table: Packed, q: Floats, lines: Floats) -> None:
         e, i = table.slopes_at[p, 0], table.slopes_at[p, 1]
         ph, pl = dd_mul(table.slopes[p, 0], table.slopes[p, 1], q[i, 0], q[i, 1])
         lines[e, 0], lines[e, 1] = dd_add(lines[e, 0], lines[e, 1], ph, pl)
+
+
+@kernel()
+def at_state(table: Packed, q: Floats, v: Floats, rates: Floats, lines: Floats) -> None:
+    """Fill in the entries of W and X at a state of shapes (n, 2), with space for the rates of shape (2, n)."""
+    entries_of_lines_pairs(table, q, lines)
+    if table.slides.at.shape[0] > 0:
+        for i in range(v.shape[0]):
+            rates[0, i], rates[1, i] = v[i, 0], v[i, 1]
+        put_friction(table, rates, 0, lines)
 
 
 @kernel()
@@ -75,6 +93,8 @@ def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: 
         if table.laws.push.shape[0] > 0:
             values_of_laws(table.laws, path, size, k, products.way[0], products.laws)
         _pushed(table.laws, products.laws, k, right)
+        if table.slides.at.shape[0] > 0:
+            add_turning(table, products, k)
         summed_pairs(products, k)
         for p in range(at.shape[0]):
             row = np.uintp(at[p, ROW])
@@ -247,7 +267,8 @@ def advance_pairs(
     # Coefficient k is to about tolerance^(k / order) of the first ones: doubles do for those of the last digits.
     bits = -math.log2(tolerance)
     paired = min(max(int(order * (1.0 - LAST_DIGITS / bits)), 1), order - 1)
-    entries_of_lines_pairs(table, q, lines)
+    moving = np.empty((2, n))
+    at_state(table, q, v, moving, lines)
     found = inverted_pairs(table, lines, space)
     if found == FAILED:
         return SINGULAR, 0
@@ -273,6 +294,11 @@ def advance_pairs(
             known = np.all(np.isfinite(c[:, 2, 0])) or table.laws.operations.shape[0] > 0
             return (SINGULAR if known else LOST), step
         h = way * step_size(c[:, :, 0], table.group, tolerance, lowest_bound(table.laws.gaps, order))
+        if table.slides.at.shape[0] > 0:
+            reach = least_reach(table, products)
+            if reach < SOON or (reach > LATE and table.slides.finer > 0):
+                return SLOWED, step
+            h = way * min(abs(h), longest_step(table, products, TURNING * tolerance))
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return (SINGULAR if abs(h) >= 0.0 or table.laws.operations.shape[0] > 0 else LOST), step
         if abs(h) >= abs(left):
@@ -288,7 +314,7 @@ def advance_pairs(
             if not (abs(q[i, 0]) < 1e150 and abs(v[i, 0]) < 1e150):
                 formed = math.isfinite(q[i, 0]) and math.isfinite(v[i, 0])
                 return (LOST if formed or table.laws.operations.shape[0] == 0 else SINGULAR), step
-        entries_of_lines_pairs(table, q, lines)
+        at_state(table, q, v, moving, lines)
         found = inverted_pairs(table, lines, space)
         if found == FAILED:
             return SINGULAR, step
@@ -324,8 +350,9 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
     space = saddle_space(table, 2)
     right, found = np.zeros((2, padded(n + m))), np.empty((2, padded(n + m)))
     path, laws = np.empty((2, 2 * n)), np.zeros((table.laws.operations.shape[0], 1, 2))
+    rates = np.empty((2, n))
     for s in range(q.shape[0]):
-        entries_of_lines_pairs(table, q[s], lines)
+        at_state(table, q[s], v[s], rates, lines)
         if inverted_pairs(table, lines, space) == FAILED:
             return s
         right[:] = 0.0

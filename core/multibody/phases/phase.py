@@ -205,7 +205,7 @@ class PhaseMotion:
 def phase_of(
     base: Described,
     found: Decided,
-    turning: Sequence[str],
+    turning: Mapping[str, int | None],
     tracks: Tracks,
     start: ContactStart,
     opening: Mapping[int, int],
@@ -214,8 +214,8 @@ def phase_of(
 
     Parameters
     ----------
-    turning : sequence of str
-        Contacts whose friction turns with their slip.
+    turning : mapping of str to int or None
+        Contacts whose friction turns with their slip, and the powers of time with which slips begin from rest.
     opening : mapping of int to int
         See `Phase.openings`.
 
@@ -229,7 +229,10 @@ def phase_of(
     onsets = [State.CLOSED if opening.get(i, 0) > 1 else state for i, state in enumerate(onsets)]
     for track in tracks.each:
         phase = phase_table(base.measures.table, found.unilateral, found.states, track.q, track.v)
-        phase.table.rows = [row if row.name in turning else replace(row, slide=None) for row in phase.table.rows]
+        phase.table.rows = [
+            replace(row, begins=turning[row.name]) if row.name in turning else replace(row, slide=None)
+            for row in phase.table.rows
+        ]
         if not tracks.exact:
             onto = phase_table(base.measures.table, found.unilateral, onsets, track.q, track.v).table
             project(onto, tracks.wide()[0])

@@ -16,10 +16,12 @@ from core.multibody.contacts.projection import project
 from core.multibody.equations.expansion import Series
 from core.multibody.equations.packed import two_to
 from core.multibody.equations.polynomial_roots import first_negative, sharpened
+from core.multibody.motion.modelling import Modelled
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
+from core.multibody.motion.whole import Whole
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.shared_friction import first_without_share
-from core.multibody.phases.turning_pieces import ExpandedInBalls
+from core.multibody.phases.turning_pieces import ExpandedTurning
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.phases.uniform_pieces import ExpandedUniform
 from core.multibody.phases.watches import Crossing, Watch, lengths, switches, watches
@@ -31,8 +33,12 @@ from core.multibody.search.location import NotLocated, located, state_after, sta
 from core.multibody.search.pieces import Expanded, ExpandedWhole, repeats_after
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described
-from core.multibody.table.table import Row
 from core.multibody.trajectory.events import follows, runs_of
+
+
+_BEFORE_END = 1.0 - 2.0**-44
+"""Share of the time until a slip ends in which other events are looked for: pieces beside it are shorter than doubles
+tell times apart, and what happens there is decided anew at the end."""
 
 
 class SingularPlace(Exception):
@@ -177,29 +183,53 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
     """Return the end of a phase in which friction turns: that of a slip, if nothing else comes before."""
     turning = {row.name for row in phase.tables[0].table.rows if row.slide is not None}
     others = [one for one in watched if not (one.what == "slip" and one.one.name in turning)]
-    runs = []
-    for model, kind in zip([phase.models[0], phase.models[-1]], ("fine", "check"), strict=True):
-        (_, motion), *_ = model.whole.parts
-        assert isinstance(motion, TurningSlip)
-        runs.append(motion.run(kind, left))
-    ended = [run.ended for run in runs]
-    reach = left if ended[0] is None else min(left, float(runs[0].starts[-1]))
-    found = _searched(phase, others, reach)
-    if found or ended[0] is None or runs[0].starts[-1] > left:
-        return found
-    number = next(i for i, one in enumerate(phase.unilateral) if one.name == (ended[0] or Row("", None, {})).name)
+    motions = [(_turning(model.whole), kind) for model, kind in zip(_both(phase), ("fine", "check"), strict=True)]
+    reach = min(left, motions[0][0].first_reach)
+    while True:
+        first = motions[0][0].run("fine", reach)
+        before_end = _BEFORE_END * float(first.reached)
+        found = _searched(phase, others, reach if first.ended is None else min(reach, before_end))
+        if found or first.reached > left:
+            return found
+        if first.ended is not None:
+            break
+        if reach >= left:
+            return []
+        reach = min(left, 2.0 * reach)
+    runs = [motion.run(kind, 2.0 * float(first.reached)) for motion, kind in motions]
+    if runs[-1].ended is None:
+        since = float(phase.start)
+        raise AccuracyUnreachable(
+            None,
+            1.0,
+            f'whether "{first.ended.name}" slips on {float(first.reached):.6g} s after {since:.17g} s is not known',
+            path=("times",),
+            remedy=f"ask for earlier times than {since:.6g} s only",
+        )
+    number = next(i for i, one in enumerate(phase.unilateral) if one.name == first.ended.name)
     crossings = []
     states = [State.STICK if i == number else state for i, state in enumerate(phase.states)]
-    scale = FLOOR * max(abs(float(x.mid())) for x in runs[0].table.q)
-    both = zip(runs[0].table.q, runs[1].table.q, strict=True)
-    known = [arb(x.mid(), SAFETY_FACTOR * float(abs(x - y).mid()) + scale) for x, y in both]
-    for run in runs:
+    (q, v), (other, rates) = (run.end_state() for run in runs)
+    scale = FLOOR * max(abs(float(x.mid())) for x in q)
+    known = [arb(x.mid(), SAFETY_FACTOR * float(abs(x - y).mid()) + scale) for x, y in zip(q, other, strict=True)]
+    for run, state in zip(runs, ((q, v), (other, rates)), strict=True):
         # What is left of the slip is taken out, as the connections would.
-        table = phase_table(base.measures.table, phase.unilateral, states, run.table.q, run.table.v).table
+        table = phase_table(base.measures.table, phase.unilateral, states, *state).table
         project(table, known)
         watch = Watch(number, "slip", phase.unilateral[number])
-        crossings.append(Crossing(run.starts[-1], watch, table.q, table.v))
+        crossings.append(Crossing(run.reached, watch, table.q, table.v))
     return crossings
+
+
+def _both(phase: Phase) -> tuple[Modelled, Modelled]:
+    """Return the models of both tracks, or that of the only one twice."""
+    return phase.models[0], phase.models[-1]
+
+
+def _turning(whole: Whole) -> TurningSlip:
+    (_, motion), *_ = whole.parts
+    assert isinstance(motion, TurningSlip), "friction that turns has a model of its own"
+    return motion
 
 
 def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
@@ -310,7 +340,7 @@ def expansions_of(phase: Phase, coordinates: Sequence[int] | None = None, *, fin
     """
     first, last = phase.models[0].whole, phase.models[-1].whole
     if phase.turning:
-        both = [ExpandedInBalls(first, "fine"), ExpandedInBalls(last, "check")]
+        both = [ExpandedTurning(first, "fine"), ExpandedTurning(last, "check")]
         return Expansions(both, both)
     if phase.uniform:
         uniform = [ExpandedUniform(motion) for motion in phase.exact_motions]

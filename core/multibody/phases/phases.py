@@ -41,7 +41,7 @@ from core.multibody.phases.schedule import Entry, Schedule
 from core.multibody.phases.slow_bounces import NEAR, SLOW, may_strike, rate_share, slowness, stopped_share, time_left
 from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import Tracks
-from core.multibody.phases.turning_slip import begins_at_once, turns
+from core.multibody.phases.turning_slip import onset_power, turns
 from core.multibody.phases.watches import Watch
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Acting, Described, described
@@ -103,7 +103,7 @@ class _Run:
         self.schedule = Schedule.of(base)
         self.acting: Acting = {name: None for name, one in base.measures.timed.items() if one.acts}
         self.passages: list[tuple[Entry, Watch]] = []
-        self.turning: list[str] = []
+        self.turning: dict[str, int | None] = {}
         # What struck together last, and how often in turn.
         self.bounced: tuple[tuple[int, ...], int] = (), 0
 
@@ -431,9 +431,12 @@ class _Run:
         found = without_passing_touch(self.base, found, self.tracks, self.start)
         require_pressed_in_plane(self.base, found)
         now = phase_table(table, found.unilateral, found.states, q, v)
-        self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
+        self.turning = dict.fromkeys(turns(now.table, [one.name for one in found.unilateral], LOOKED))
         for one in found.unilateral:
-            if one.name in self.turning and is_zero(slip_rate(one, q, v)) and not begins_at_once(now.table, one.name):
+            if one.name not in self.turning or not is_zero(slip_rate(one, q, v)):
+                continue
+            self.turning[one.name] = onset_power(now.table, one.name)
+            if self.turning[one.name] is None:
                 return Problem(
                     "turning-onset",
                     "what begins to slide in space without an acceleration turns its friction from the first moment on",

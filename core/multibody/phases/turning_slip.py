@@ -1,8 +1,10 @@
-"""Motion while friction turns with the slip, in space: a Taylor series in balls, up to where the slip ends.
+"""Motion while friction turns with the slip, in space: a Taylor series in pairs of doubles, up to where the slip ends.
 
-The unit vector along the slip is no polynomial of the coordinates, so that neither the passes nor the compiled series
-apply: the whole table is expanded anew at every step. Towards the end of the slip steps become shorter in proportion to
-it; below `ENDED` of the largest rate the rest is passed over at the last rate of change.
+The unit vector along the slip is no polynomial of the coordinates, so that the passes do not apply; the kernels know
+its series (`core.multibody.motion.turning_friction`). Towards the end of a slip steps become shorter in proportion to
+what is left of it: the motion is followed in legs, each in a unit of time that fits. Below `ENDED` the rest is passed
+over at the last rate of change. A slip that begins from rest has no direction that the kernels could form: its first
+step is made in balls.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from flint import arb, arb_mat, arb_poly
+from flint import arb, arb_poly
 
 from core.arrays import Floats
 from core.balls import precision
@@ -23,10 +25,13 @@ from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, is_
 from core.multibody.contacts.conditions_of_states import LOOKED
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.equations.dynamics import accelerations
-from core.multibody.equations.expansion import Expansion, expansion, saddle, slope, value
-from core.multibody.equations.packed import exponent, pair
+from core.multibody.equations.expansion import Expansion, expansion, slope, value
+from core.multibody.equations.onsets_of_slip import rests
+from core.multibody.equations.packed import Packed, Units, exponent, packed, pair, two_to, units_of
 from core.multibody.motion.modelling import Modelled, Piece
 from core.multibody.motion.motion import Motion, States
+from core.multibody.motion.numerical import MOST_STEPS, SINGULAR_TIME_ERROR, Run, evaluate, integrate
+from core.multibody.motion.series_pairs import multipliers_pairs
 from core.multibody.motion.whole import Whole
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.search.bands import SAFETY_FACTOR
@@ -35,46 +40,98 @@ from core.multibody.table.description import Described
 from core.multibody.table.measures import COMPONENTS
 from core.multibody.table.table import Row, Table, identity
 
-ENDED = 2.0**-72
-"""Share of the largest rate below which slip ends."""
+ENDED = 2.0**-60
+"""Time that is left of a slip, in the unit of time of its motion, which is passed over: its square is nothing beside
+places, and rates are wrong by less than a hundredth of the rounding of doubles."""
 _BITS = 256
-"""Precision of the series: more than twice that of pairs, in which its states are stated."""
-_MOST_STEPS = 250
-"""Steps that one phase of turning slip may take."""
-
-_PART = 0.75
-"""Share of the time in which slip could end that a step takes at most: the series diverges there, and beside it the
-last terms, by which steps are chosen, are a quarter of what is left out."""
-_NO_REST = 2.0**-30
-"""Share of a step that is so little that the next one is followed from before its start."""
+"""Precision of the step from rest: more than twice that of pairs, in which its states are stated."""
 _LONGEST = 1e6
-"""Longest step (s), where slip does not change at all."""
-_KINDS = {"fine": (32, 2.0**-96), "check": (30, 2.0**-90)}
-"""Order and tolerance of the two runs."""
+"""Longest step (s) from rest, where slip does not change at all."""
+_FROM_REST = {"fine": (32, 2.0**-100), "check": (30, 2.0**-94)}
+"""Order and tolerance of the step from rest, as of the series that goes on from it."""
+
+
+@dataclass
+class Leg:
+    """Steps in one unit of time.
+
+    Attributes
+    ----------
+    begins : ball
+        Since the start of the motion (s).
+    table : Table
+        With the state there.
+    arrays, units : Packed and Units
+    run : Run
+    """
+
+    begins: Ball
+    table: Table
+    arrays: Packed
+    units: Units
+    run: Run
+
+    @property
+    def ends(self) -> Ball:
+        """The time reached (s)."""
+        return self.begins + self._unit * _sum_of(self.run.starts[-1])
+
+    @property
+    def _unit(self) -> Ball:
+        return arb(two_to(self.units.time))
+
+    def since(self, time: Ball) -> tuple[float, float]:
+        """Return a time in the units of the leg since it begins, as a pair."""
+        return pair(time - self.begins, -self.units.time)
+
+    def states(self, times: Sequence[tuple[float, float]]) -> tuple[Floats, Floats]:
+        """Return coordinates and rates at times in its units, each of shape (t, n, 2), in SI units."""
+        high, low = (np.array([time[i] for time in times]) for i in (0, 1))
+        q, v = evaluate(self.run, high, low)
+        up = self.units.up[None, :, None]
+        return q * up, v * up * two_to(-self.units.time)
 
 
 @dataclass
 class SlipSeries:
-    """Steps so far.
+    """The motion so far.
 
     Attributes
     ----------
-    starts : list of ball
-        Times at which steps begin, and the time reached.
-    steps : list of Expansion
-    table : Table
-        With the state reached.
+    legs : list of Leg
+    onset : Expansion or None
+        The step from rest, and when it ends (s).
+    onset_ends : ball
     ended : Row or None
         Whose slip ended the run.
-    fastest : dict of str to float
-        Largest rate so far of every unit.
     """
 
-    starts: list[Ball]
-    steps: list[Expansion]
-    table: Table
+    legs: list[Leg]
+    onset: Expansion | None = None
+    onset_ends: Ball = ZERO
     ended: Row | None = None
-    fastest: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def reached(self) -> Ball:
+        """The time reached (s)."""
+        return self.legs[-1].ends
+
+    @property
+    def singular(self) -> bool:
+        """Whether a singular place ended it."""
+        return self.legs[-1].run.singular
+
+    def end_state(self) -> tuple[list[Ball], list[Ball]]:
+        """Return coordinates and rates at the time reached."""
+        leg = self.legs[-1]
+        q, v = leg.states([(float(leg.run.starts[-1, 0]), float(leg.run.starts[-1, 1]))])
+        return [_sum_of(x) for x in q[0]], [_sum_of(x) for x in v[0]]
+
+    def leg_at(self, time: Ball) -> int:
+        """Return the number of the leg in which a time is; -1 for the step from rest."""
+        if self.onset is not None and time < self.onset_ends:
+            return -1
+        return max(bisect_right([leg.begins for leg in self.legs], time) - 1, 0)
 
 
 @dataclass
@@ -90,89 +147,103 @@ class TurningSlip(Motion):
 
     @cached_property
     def chosen(self) -> list[int]:
-        """Rows that do not follow from others."""
+        """Rows that do not follow from others; those that do so at the start do for good."""
         return self.table.independent_rows()
 
+    @cached_property
+    def packed(self) -> tuple[Packed, Units]:
+        """The table for compiled code, in the unit of time of its motion."""
+        units = units_of(self.table, accelerations(self.table)[0])
+        return packed(self.table, self.chosen, units), units
+
+    @property
+    def first_reach(self) -> float:
+        """Time (s) until which a search goes at first."""
+        return 2.0 * two_to(self.packed[1].time)
+
     def run(self, kind: str, end: float) -> SlipSeries:
-        """Return the steps to a time, or to the end of the slip.
+        """Return the motion to a time, or to the end of the slip.
 
         Raises
         ------
         BudgetExceeded
-            For more steps than one phase may take.
+            For more steps than a motion may take.
         """
-        found = self._runs.setdefault(kind, SlipSeries([ZERO], [], self.table))
-        order, tolerance = _KINDS[kind]
         with precision(_BITS):
-            while found.ended is None and found.starts[-1] < end:
-                if len(found.steps) > _MOST_STEPS:
+            found = self._runs.get(kind)
+            if found is None:
+                found = self._runs[kind] = self._begun(kind)
+            while found.ended is None and not found.singular and found.reached < end:
+                if sum(len(leg.run.series) for leg in found.legs) > MOST_STEPS:
                     raise BudgetExceeded(
-                        "steps", len(found.steps), _MOST_STEPS, path=("times",), remedy="ask for a shorter time"
+                        "steps", MOST_STEPS, MOST_STEPS, path=("times",), remedy="ask for a shorter time"
                     )
-                self._step(found, order, tolerance)
+                leg = found.legs[-1]
+                goal = float((arb(end) - leg.begins) * arb(2) ** -leg.units.time)
+                # Up to the last time that is asked for, to rounding.
+                goal = math.nextafter(goal, math.inf)
+                more = integrate(leg.table, leg.arrays, leg.units, kind, goal, leg.run if len(leg.run.series) else None)
+                leg.run = more if not len(leg.run.series) else leg.run.followed_by(more)
+                if leg.run.slowed:
+                    self._go_on(found)
         return found
 
-    def about(self, kind: str, time: float) -> tuple[Expansion, float]:
-        """Return the motion about a time, from the step in which it lies, and how much of the step is left (s).
+    def _begun(self, kind: str) -> SlipSeries:
+        if not any(rests(self.table, self.table.rows[r]) for r in self.chosen):
+            return SlipSeries([self._leg(ZERO, self.table, *self.packed)])
+        order, tolerance = _FROM_REST[kind]
+        motion = expansion(self.table, order, self.chosen)
+        h = _length(motion, self.table.units, tolerance)
+        q, v = [arb(value(x, h).mid()) for x in motion.places], [arb(value(slope(x), h).mid()) for x in motion.places]
+        return SlipSeries([self._leg(h, replace(self.table, q=q, v=v), *self.packed)], motion, h)
 
-        After the end of the slip it is the last step that is followed.
-        """
-        run = self.run(kind, math.nextafter(time, math.inf))
-        with precision(_BITS):
-            at, last = arb(time), len(run.steps) - 1
-            k = min(max(bisect_right(run.starts, at) - 1, 0), last)
-            if k < last and float(run.starts[k + 1] - at) < _NO_REST * float(run.starts[k + 1] - run.starts[k]):
-                k += 1
-            rest = float(run.starts[k + 1] - at)
-            later = arb_poly([at - run.starts[k], 1])
-            motion = run.steps[k]
-            found = Expansion(*([_moved(x, later) for x in each] for each in (motion.places, motion.multipliers)))
-        return found, rest if rest > 0.0 else _LONGEST
+    def _leg(self, begins: Ball, table: Table, arrays: Packed, units: Units) -> Leg:
+        nothing = np.zeros((0, len(table.names), 1, 2))
+        return Leg(begins, table, arrays, units, Run(np.zeros((1, 2)), nothing))
 
-    def _step(self, run: SlipSeries, order: int, tolerance: float) -> None:
-        # Rows that follow from others at the start do so for good; on a state with its error they may not.
-        motion = expansion(run.table, order, self.chosen)
-        run.steps.append(motion)
-        for unit, series in zip(self.table.units, motion.places, strict=True):
-            run.fastest[unit] = max(run.fastest.get(unit, 0.0), abs(float(series[1])))
-        h = min(_length(motion, self.table.units, run.fastest, tolerance), self._within(run.table, motion))
-        ending = self._ending(run.table, motion, run.fastest)
-        if ending is not None:
-            h, run.ended = ending
-        q, v = ([arb(value(x, h).mid()) for x in motion.places], [arb(value(slope(x), h).mid()) for x in motion.places])
-        run.table = replace(run.table, q=q, v=v)
-        run.starts.append(run.starts[-1] + h)
-
-    def _within(self, table: Table, motion: Expansion) -> Ball:
-        """Return the share of the time in which slip could end that a step may take: there the series diverges."""
-        times = [arb(_LONGEST)]
-        for row in table.rows:
-            if row.slide is not None:
-                slips, gains = table.slip_of(row), _gains(motion, row)
-                fast, change = (sum((x * x for x in vector), ZERO).sqrt() for vector in (slips, gains))
-                # What begins to slide has no slip yet.
-                if change > 0 and fast > 0:
-                    times.append(arb((_PART * fast / change).mid()))
-        return min(times, key=float)
-
-    def _ending(self, table: Table, motion: Expansion, fastest: dict[str, float]) -> tuple[Ball, Row] | None:
-        """Return after which time slip ends, if it is about to."""
-        for row in table.rows:
+    def _go_on(self, found: SlipSeries) -> None:
+        """Begin another leg in a unit of time that fits, or end the slip that is about to end."""
+        leg, (q, v) = found.legs[-1], found.end_state()
+        gain = _accelerations(leg, q, v)
+        reach, ends, ending = math.inf, math.inf, None
+        for row in (self.table.rows[r] for r in self.chosen):
             if row.slide is None:
                 continue
-            x, y = table.slip_of(row)
-            size = (x * x + y * y).sqrt()
-            if not size > 0:
-                continue
-            gains = _gains(motion, row)
-            loss = -(x * gains[0] + y * gains[1]) / size
-            if float(size) < ENDED * fastest["m"] and loss > 0:
-                return arb((size / loss).mid()), row
-        return None
+            (x, y), (a, b) = (_components(row, vector) for vector in (v, gain))
+            size, change, falls = math.hypot(x, y), math.hypot(a, b), -(x * a + y * b)
+            reach = min(reach, size / change if change > 0.0 else math.inf)
+            if falls > 0.0 and size * size / falls < ends:
+                ends, ending = size * size / falls, row
+        base, units = self.packed
+        table = replace(self.table, q=q, v=v)
+        if ending is not None and ends < math.ldexp(ENDED, units.time):
+            found.ended = ending
+            found.legs.append(_last(leg, found.reached, table, gain, ends))
+            return
+        time = min(units.time, math.floor(math.log2(reach))) if reach < math.inf else units.time
+        if time < units.time:
+            units = replace(units, time=time)
+            base = packed(self.table, self.chosen, units)
+            base = base._replace(slides=base.slides._replace(finer=1))
+        found.legs.append(self._leg(found.reached, table, base, units))
+
+    def ended(self, end: float) -> tuple[float, float] | None:
+        """Return the time of a singular place before `end` and its error, None without one."""
+        run = self.run("fine", end)
+        return (float(run.reached), SINGULAR_TIME_ERROR * float(run.reached)) if run.singular else None
+
+    def about_rest(self, kind: str, time: float) -> tuple[Expansion, float]:
+        """Return the motion about a time within the step from rest, and how much of the step is left (s)."""
+        run = self._runs[kind]
+        assert run.onset is not None
+        with precision(_BITS):
+            later = arb_poly([arb(time), 1])
+            moved = ([_moved(x, later) for x in each] for each in (run.onset.places, run.onset.multipliers))
+            return Expansion(*moved), float(run.onset_ends - arb(time))
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states by the finer run, judged by the other."""
-        (q, v), (other, rate) = (self.by(kind, times) for kind in _KINDS)
+        (q, v), (other, rate) = (self.by(kind, times) for kind in _FROM_REST)
         apart = [np.abs((a - b).sum(axis=2)) for a, b in ((q, other), (v, rate))]
         return States(q, v, SAFETY_FACTOR * apart[0], SAFETY_FACTOR * apart[1], (other, rate))
 
@@ -182,23 +253,55 @@ class TurningSlip(Motion):
         n = len(self.table.names)
         q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
         with precision(_BITS):
-            for s, t in enumerate(times):
-                if not run.steps:
-                    q[s], v[s] = [pair(x, 0) for x in self.table.q], [pair(x, 0) for x in self.table.v]
+            where: dict[int, list[int]] = {}
+            for s, t in enumerate(times.tolist()):
+                where.setdefault(run.leg_at(arb(t)), []).append(s)
+            for k, own in where.items():
+                if k < 0:
+                    assert run.onset is not None
+                    for s in own:
+                        for i, series in enumerate(run.onset.places):
+                            late = arb(float(times[s]))
+                            q[s, i], v[s, i] = pair(value(series, late), 0), pair(value(slope(series), late), 0)
                     continue
-                at = min(arb(float(t)), run.starts[-1])
-                # In balls: the last steps are shorter than what doubles tell apart.
-                k = min(max(bisect_right(run.starts, at) - 1, 0), len(run.steps) - 1)
-                late = at - run.starts[k]
-                for i, series in enumerate(run.steps[k].places):
-                    q[s, i], v[s, i] = pair(value(series, late), 0), pair(value(slope(series), late), 0)
+                leg = run.legs[k]
+                if not len(leg.run.series):
+                    q[own], v[own] = ([pair(x, 0) for x in vector] for vector in (leg.table.q, leg.table.v))
+                    continue
+                q[own], v[own] = leg.states([leg.since(arb(float(times[s]))) for s in own])
         return q, v
 
 
-def _gains(motion: Expansion, row: Row) -> list[Ball]:
-    """Return the rates of change of both components of a slip, whose lines are constant."""
+def _sum_of(number: Floats) -> Ball:
+    return arb(float(number[0])) + arb(float(number[1]))
+
+
+def _components(row: Row, vector: Sequence[Ball]) -> tuple[float, float]:
+    """Return both components of a slip, or of its change, whose lines are constant."""
     assert row.slide is not None
-    return [sum((2 * poly[()] * motion.places[j][2] for j, poly in line.items()), ZERO) for line in row.slide[1:]]
+    x, y = (sum((poly[()] * vector[j] for j, poly in line.items()), ZERO) for line in row.slide[1:])
+    return float(x), float(y)
+
+
+def _accelerations(leg: Leg, q: Sequence[Ball], v: Sequence[Ball]) -> list[Ball]:
+    """Return the accelerations at a state of a leg (SI)."""
+    lengths, time = leg.units.lengths, leg.units.time
+    places = np.array([[pair(x, -e) for x, e in zip(q, lengths, strict=True)]])
+    rates = np.array([[pair(x, time - e) for x, e in zip(v, lengths, strict=True)]])
+    gain, multipliers = np.zeros_like(places), np.zeros((1, len(leg.arrays.rate), 2))
+    multipliers_pairs(leg.arrays, places, rates, gain, multipliers)
+    return [_sum_of(x) * arb(2) ** (e - 2 * time) for x, e in zip(gain[0], lengths, strict=True)]
+
+
+def _last(leg: Leg, begins: Ball, table: Table, gain: Sequence[Ball], left: float) -> Leg:
+    """Return the leg over the last of a slip, at the last rate of change."""
+    time, lengths = leg.units.time, leg.units.lengths
+    series = np.zeros((1, len(table.names), leg.run.series.shape[2], 2))
+    for k, (vector, factor) in enumerate(((table.q, 1), (table.v, 1), (gain, arb(1) / 2))):
+        for i, x in enumerate(vector):
+            series[0, i, k] = pair(x * factor, k * time - lengths[i])
+    starts = np.array([(0.0, 0.0), pair(arb(left), -time)])
+    return Leg(begins, table, leg.arrays, leg.units, Run(starts, series))
 
 
 def _moved(series: Sequence[Ball], later: arb_poly) -> list[Ball]:
@@ -207,29 +310,21 @@ def _moved(series: Sequence[Ball], later: arb_poly) -> list[Ball]:
     return [*found, *[ZERO] * (len(series) - len(found))]
 
 
-def _length(motion: Expansion, units: Sequence[str], fastest: dict[str, float], tolerance: float) -> Ball:
+def _length(motion: Expansion, units: Sequence[str], tolerance: float) -> Ball:
     """Return the length of a step: its last terms are a share of the largest rate of their unit, or of a lower term."""
     # What rests as yet has no rate but what the step itself gains.
-    scales = _scales(motion, units, fastest)
+    scales: dict[str, list[tuple[int, float]]] = {}
+    for unit, series in zip(units, motion.places, strict=True):
+        sizes = ((j, exponent(j * series[j])) for j in range(1, motion.order // 2))
+        scales.setdefault(unit, []).extend((j, float(size)) for j, size in sizes if size is not None)
     h = _LONGEST
     for unit, series in zip(units, motion.places, strict=True):
         for k in (len(series) - 2, len(series) - 1):
-            # Terms of a slip that is about to end are beyond the range of doubles.
             last = exponent(k * series[k])
             if last is not None and scales[unit]:
-                # More than the longest, whose power of two may be beyond doubles, is not needed.
                 power = max((math.log2(tolerance) + scale - last) / (k - j) for j, scale in scales[unit] if j < k)
                 h = min(h, 2.0 ** min(power, math.log2(_LONGEST)))
     return arb(h)
-
-
-def _scales(motion: Expansion, units: Sequence[str], fastest: dict[str, float]) -> dict[str, list[tuple[int, float]]]:
-    """Return by unit the powers of time of places, and the logarithms of base 2 of how fast their terms are."""
-    found = {unit: [(1, math.log2(x))] if x > 0.0 else [] for unit, x in fastest.items()}
-    for unit, series in zip(units, motion.places, strict=True):
-        sizes = ((j, exponent(j * series[j])) for j in range(2, motion.order // 2))
-        found[unit].extend((j, float(size)) for j, size in sizes if size is not None)
-    return found
 
 
 @dataclass(frozen=True)
@@ -245,28 +340,12 @@ class TurningWhole(Whole):
 
     turning: dict[str, list[tuple[Unilateral, int, int]]] = field(default_factory=dict)
 
-    def multipliers(self, q: Floats, v: Floats) -> Floats:
-        """Return the multipliers of every row, shape (t, rows)."""
-        return self._at(q, v)[1]
-
-    def accelerations(self, q: Floats, v: Floats) -> Floats:
-        """Return the acceleration of every coordinate at states, shape (t, n)."""
-        return self._at(q, v)[0]
-
-    def _at(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:
-        table = self.measures.table
-        count = len(table.names)
-        gains, found = np.zeros((len(q), count)), np.zeros((len(q), len(table.rows)))
-        chosen = table.independent_rows()
-        for s in range(len(q)):
-            places, rates = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
-            now = replace(table, q=places, v=rates).oriented()
-            right = [[x] for x in now.forces()] + [[now.convective(now.rows[r])] for r in chosen]
-            solved = saddle(now, chosen).solve(arb_mat(right)).entries()
-            gains[s] = [float(x.mid()) for x in solved[:count]]
-            for k, r in enumerate(chosen):
-                found[s, r] = float(solved[count + k].mid())
-        return gains, found
+    @cached_property
+    def arrays(self) -> tuple[Packed, Units, list[int]]:
+        """The table as described for compiled code, its units, and the rows that it holds."""
+        (_, motion), *_ = self.parts
+        assert isinstance(motion, TurningSlip)
+        return *motion.packed, motion.chosen
 
     def keeps(self, measure: Poly) -> bool:
         """Return whether a function of the coordinates is constant: without passes, its series has to say so."""
@@ -334,11 +413,15 @@ def turning_model(
     return Modelled(found, whole, [Piece(everything, table, gain, chosen)], start.moved, start.fitted)
 
 
-def begins_at_once(table: Table, name: str) -> bool:
-    """Return whether what slips from rest in space does so with an acceleration along its first direction."""
-    motion = expansion(table, 2)
-    lines = [row.slide[1] for row in table.rows if row.slide is not None and row.name == name]
-    return all(bool(motion.of_rates(line)[1] > 0) for line in lines)
+def onset_power(table: Table, name: str) -> int | None:
+    """Return the power of time with which what slips from rest in space begins to, None where none is found."""
+    motion = expansion(table, LOOKED)
+    for row in table.rows:
+        if row.slide is not None and row.name == name:
+            slip = motion.of_rates(row.slide[1])
+            found = next((k for k, x in enumerate(slip) if k and not is_zero(x)), None)
+            return found if found is not None and slip[found] > 0 else None
+    return None
 
 
 def turns(table: Table, names: Sequence[str], order: int) -> list[str]:

@@ -216,15 +216,7 @@ class ExpandedWhole:
         AccuracyUnreachable
             At a place where the connections lose their rank.
         """
-        arrays, units, chosen = self.whole.arrays
-        lengths, series, sizes = _expanded(arrays, units, self._states(times), reach)
-        n, rows = len(units.lengths), len(self.whole.measures.table.rows)
-        multipliers = np.zeros((len(times), rows, COEFFICIENTS, 2))
-        multiplier_sizes = np.zeros((len(times), rows, COEFFICIENTS))
-        factors = np.array([two_to(units.multiplier(row)) for row in chosen])
-        multipliers[:, chosen] = series[:, n:, :COEFFICIENTS] * factors[:, None, None]
-        multiplier_sizes[:, chosen] = sizes[:, n:, :COEFFICIENTS] * factors[:, None]
-        return Pieces(*lengths, series[:, :n], sizes[:, :n], multipliers, multiplier_sizes)
+        return expanded_from(*self.whole.arrays, len(self.whole.measures.table.rows), self._states(times), reach)
 
     def _states(self, times: Floats) -> tuple[Floats, Floats]:
         if not self.coarse:
@@ -260,6 +252,31 @@ class ExpandedPlaces:
         places, place_sizes = _spread_series(slopes, offsets, own, own_sizes, np.array(where, dtype=np.int64))
         nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
         return Pieces(*lengths, places, place_sizes, nothing, nothing[..., 0])
+
+
+def expanded_from(
+    arrays: Packed,
+    units: Units,
+    chosen: Sequence[int],
+    rows: int,
+    states: tuple[Floats, Floats],
+    reach: Floats,
+) -> Pieces:
+    """Return the pieces that begin at states, with the multipliers of the chosen ones of some rows.
+
+    Raises
+    ------
+    AccuracyUnreachable
+        At a place where the connections lose their rank.
+    """
+    lengths, series, sizes = _expanded(arrays, units, states, reach)
+    n = len(units.lengths)
+    multipliers = np.zeros((len(reach), rows, COEFFICIENTS, 2))
+    multiplier_sizes = np.zeros((len(reach), rows, COEFFICIENTS))
+    factors = np.array([two_to(units.multiplier(row)) for row in chosen])
+    multipliers[:, chosen] = series[:, n:, :COEFFICIENTS] * factors[:, None, None]
+    multiplier_sizes[:, chosen] = sizes[:, n:, :COEFFICIENTS] * factors[:, None]
+    return Pieces(*lengths, series[:, :n], sizes[:, :n], multipliers, multiplier_sizes)
 
 
 def _expanded(

@@ -18,7 +18,8 @@ from core.multibody.equations.saddle import FAILED, Saddle, inverted_pairs, sadd
 from core.multibody.laws.corners import until_corner
 from core.multibody.motion.products import Products, products_of, started
 from core.multibody.motion.series import lowest_bound, step_size
-from core.multibody.motion.series_pairs import coefficients_pairs, entries_of_lines_pairs
+from core.multibody.motion.series_pairs import at_state, coefficients_pairs
+from core.multibody.motion.turning_friction import longest_step
 
 ORDER = 22
 """Highest power of the coordinates; multipliers have two less."""
@@ -96,13 +97,14 @@ def expand(
     lines = np.empty((table.lines.shape[0], 2))
     space, products = saddle_space(table, 2), products_of(table, order, 2)
     path, size = products.path, products.right.shape[1]
+    rates = np.empty((2, n))
     own = np.empty((n + m if table.laws.gaps > 0 else n, order + 1))
     group = np.full(len(own), FORCES)
     group[:n] = table.group
     way = 1.0 if reach[0] > 0.0 else -1.0
     products.way[0] = way
     for s in range(q.shape[0]):
-        entries_of_lines_pairs(table, q[s], lines)
+        at_state(table, q[s], v[s], rates, lines)
         if inverted_pairs(table, lines, space) == FAILED:
             return s
         for i in range(n):
@@ -113,7 +115,7 @@ def expand(
         mantissa, exponent = math.frexp(abs(reach[s]))
         exponent -= time + (mantissa == 0.5)
         longest = math.ldexp(1.0, min(exponent, 1000))
-        step = _step(table, products, own, group)
+        step = min(_step(table, products, own, group), longest_step(table, products, TOLERANCE))
         corner = step
         if table.laws.operations.shape[0] > 0:
             step, corner = _to_corner(table, space, products, own, group, step, longest)

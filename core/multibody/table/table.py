@@ -53,6 +53,8 @@ class Row:
     slide : (ball, line, line) or None
         In space, of friction that turns with the slip: -mu and two constant lines along which the slip has the
         components s. The drag is -mu (s/|s|) times these lines, and stands in `drag` for the present state.
+    begins : int or None
+        Power of time with which such a slip begins from rest, where that is known better than from the state.
     """
 
     name: str
@@ -61,6 +63,7 @@ class Row:
     rate: Ball = ZERO
     drag: LinearForm = field(default_factory=dict)
     slide: tuple[Ball, LinearForm, LinearForm] | None = None
+    begins: int | None = None
 
     @classmethod
     def held(cls, name: str, measure: Poly) -> Row:

@@ -43,9 +43,11 @@ def test_a_ball_begins_to_slide_from_a_state_with_an_error() -> None:
     assert isinstance(turning, TurningSlip)
     # About a time within a step the motion is the same polynomial.
     late = 2e-5
-    about, rest = turning.about("fine", late)
+    step = turning.run("fine", late).onset
+    assert step is not None
+    about, rest = turning.about_rest("fine", late)
     assert rest > 0.0
-    for series, own in zip(about.places, turning.run("fine", late).steps[0].places, strict=True):
+    for series, own in zip(about.places, step.places, strict=True):
         there = sum(float(x) * late**k for k, x in enumerate(own))
         assert float(series[0]) == pytest.approx(there, rel=1e-14, abs=1e-14)
 
