@@ -384,7 +384,7 @@ TESTED_IN |= {
         "table/test_level_rims": "audit/level_rims phases/level_phases",
         "table/test_ball_on_box": "audit/ball_on_box",
         "table/test_strings": "table/string_measures",
-        "table/test_contact_geometry_in_space": "phases/turning_pieces",
+        "phases/test_turning_slip": "equations/onsets_of_slip motion/turning_friction phases/turning_pieces",
         "statics/test_exact_places": "statics/places_beside statics/small_motions",
         "test_stated_errors": "algebra/doubles",
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",

@@ -119,8 +119,8 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
         UndecidedKind(
             "turning-onset",
             "The direction of a beginning slip turns at once",
-            "In space, the series of the motion has no start where a contact begins to slide without an acceleration, "
-            "in a direction that turns from the first moment on.",
+            "In space, the series of the motion has no start where a contact begins to slide while nothing presses it "
+            "yet, in a direction that turns from the first moment on.",
             of_mechanics=False,
         ),
         UndecidedKind(

@@ -200,6 +200,10 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     onsets = [Onset.of(table.rows[r], found[n]) for n, r in enumerate(chosen) if rests(table, table.rows[r])]
     changes = bool(onsets)
     for k in range(order - 1):
+        if k == 1:
+            # What nothing presses yet has no direction of friction at the start.
+            onsets = [onset for onset in onsets if not is_zero(onset.push[0])]
+            changes = bool(onsets)
         if k and changes:
             try:
                 inverted = _with_onsets(table, chosen, onsets, k).inv()

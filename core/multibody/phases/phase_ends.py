@@ -16,13 +16,12 @@ from core.multibody.contacts.projection import project
 from core.multibody.equations.expansion import Series
 from core.multibody.equations.packed import two_to
 from core.multibody.equations.polynomial_roots import first_negative, sharpened
-from core.multibody.motion.modelling import Modelled
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
 from core.multibody.motion.whole import Whole
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.shared_friction import first_without_share
 from core.multibody.phases.turning_pieces import ExpandedTurning
-from core.multibody.phases.turning_slip import TurningSlip
+from core.multibody.phases.turning_slip import SlipSeries, TurningSlip
 from core.multibody.phases.uniform_pieces import ExpandedUniform
 from core.multibody.phases.watches import Crossing, Watch, lengths, switches, watches
 from core.multibody.reduction.least_places import turns_back_at_zero
@@ -35,10 +34,12 @@ from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described
 from core.multibody.trajectory.events import follows, runs_of
 
-
-_BEFORE_END = 1.0 - 2.0**-44
-"""Share of the time until a slip ends in which other events are looked for: pieces beside it are shorter than doubles
-tell times apart, and what happens there is decided anew at the end."""
+_TOO_SHORT = 2.0**-44
+"""Share of the time until a slip ends before which no other event is looked for: pieces beside the end are shorter than
+doubles tell times apart, and what happens there is decided anew at the end."""
+_TURNED = 2.0**20
+"""How much longer than what is not known of the end of a slip the time before it is in which its direction is not known
+to a millionth, so that forces have no sign."""
 
 
 class SingularPlace(Exception):
@@ -183,30 +184,23 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
     """Return the end of a phase in which friction turns: that of a slip, if nothing else comes before."""
     turning = {row.name for row in phase.tables[0].table.rows if row.slide is not None}
     others = [one for one in watched if not (one.what == "slip" and one.one.name in turning)]
-    motions = [(_turning(model.whole), kind) for model, kind in zip(_both(phase), ("fine", "check"), strict=True)]
-    reach = min(left, motions[0][0].first_reach)
-    while True:
-        first = motions[0][0].run("fine", reach)
-        before_end = _BEFORE_END * float(first.reached)
-        found = _searched(phase, others, reach if first.ended is None else min(reach, before_end))
-        if found or first.reached > left:
-            return found
-        if first.ended is not None:
-            break
-        if reach >= left:
-            return []
-        reach = min(left, 2.0 * reach)
-    runs = [motion.run(kind, 2.0 * float(first.reached)) for motion, kind in motions]
-    if runs[-1].ended is None:
+    found = _searched(phase, others, left)
+    if found:
+        return found
+    runs = _runs_of_slip(phase, left)
+    ended = runs[0].ended
+    if ended is None or runs[0].reached > left:
+        return []
+    if runs[1].ended is None:
         since = float(phase.start)
         raise AccuracyUnreachable(
             None,
             1.0,
-            f'whether "{first.ended.name}" slips on {float(first.reached):.6g} s after {since:.17g} s is not known',
+            f'whether "{ended.name}" slips on {float(runs[0].reached):.6g} s after {since:.17g} s is not known',
             path=("times",),
             remedy=f"ask for earlier times than {since:.6g} s only",
         )
-    number = next(i for i, one in enumerate(phase.unilateral) if one.name == first.ended.name)
+    number = next(i for i, one in enumerate(phase.unilateral) if one.name == ended.name)
     crossings = []
     states = [State.STICK if i == number else state for i, state in enumerate(phase.states)]
     (q, v), (other, rates) = (run.end_state() for run in runs)
@@ -221,15 +215,29 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
     return crossings
 
 
-def _both(phase: Phase) -> tuple[Modelled, Modelled]:
-    """Return the models of both tracks, or that of the only one twice."""
-    return phase.models[0], phase.models[-1]
+def _runs_of_slip(phase: Phase, end: float) -> tuple[SlipSeries, SlipSeries]:
+    """Return both computations of a motion while friction turns, up to a time or to the end of the slip."""
+    first, last = (_turning(model.whole) for model in (phase.models[0], phase.models[-1]))
+    run = first.run("fine", end)
+    return run, last.run("check", end if run.ended is None else 2.0 * float(run.reached))
 
 
 def _turning(whole: Whole) -> TurningSlip:
     (_, motion), *_ = whole.parts
     assert isinstance(motion, TurningSlip), "friction that turns has a model of its own"
     return motion
+
+
+def _before_end_of_slip(phase: Phase, reach: float) -> float:
+    """Return the time before which other events are looked for in a phase: a reach, or a little before a slip ends."""
+    if not phase.turning:
+        return reach
+    runs = _runs_of_slip(phase, reach)
+    if runs[0].ended is None:
+        return reach
+    last = float(runs[0].reached)
+    apart = abs(float(runs[0].reached - runs[1].reached)) if runs[1].ended is not None else 0.0
+    return min(reach, last - max(_TOO_SHORT * last, _TURNED * apart))
 
 
 def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
@@ -240,8 +248,9 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
     reach, singular = min(last, _first_reach(phase)), None
     while True:
         singular = _singular(phase, watched, reach)
-        hit = search.until(reach if singular is None else float(singular.time) * BEFORE_SINGULAR)
-        if hit is not None or singular is not None or reach >= last:
+        until = _before_end_of_slip(phase, reach)
+        hit = search.until(until if singular is None else min(until, float(singular.time) * BEFORE_SINGULAR))
+        if hit is not None or singular is not None or until < reach or reach >= last:
             break
         reach = min(last, 2.0 * reach)
     if singular is not None and (hit is None or hit[1].time > float(singular.time) * BEFORE_SINGULAR):
@@ -351,6 +360,8 @@ def expansions_of(phase: Phase, coordinates: Sequence[int] | None = None, *, fin
 
 def _first_reach(phase: Phase) -> float:
     """Return how far a search goes at first: series that are followed beyond an event are in vain."""
+    if phase.turning:
+        return _turning(phase.models[0].whole).first_reach
     known = [motion.in_arrays for _, motion in phase.models[0].whole.parts]
     scales = [one[1].time for one in known if one is not None]
     return 2.0 * two_to(max(scales)) if scales else math.inf

@@ -439,9 +439,9 @@ class _Run:
             if self.turning[one.name] is None:
                 return Problem(
                     "turning-onset",
-                    "what begins to slide in space without an acceleration turns its friction from the first moment on",
+                    "what begins to slide in space while nothing presses it yet may rub along any direction at first",
                     (one.name,),
-                    decided_by="a velocity with which it slides already",
+                    decided_by="a push at the start, or a velocity with which it slides already",
                 )
         for one, old, new in zip(self.unilateral, self.states, found.states, strict=True):
             kind = change_of(one, old, new)

@@ -416,8 +416,8 @@ def turning_model(
 def onset_power(table: Table, name: str) -> int | None:
     """Return the power of time with which what slips from rest in space begins to, None where none is found."""
     motion = expansion(table, LOOKED)
-    for row in table.rows:
-        if row.slide is not None and row.name == name:
+    for row, push in zip(table.rows, motion.multipliers, strict=True):
+        if row.slide is not None and row.name == name and not is_zero(push[0]):
             slip = motion.of_rates(row.slide[1])
             found = next((k for k, x in enumerate(slip) if k and not is_zero(x)), None)
             return found if found is not None and slip[found] > 0 else None

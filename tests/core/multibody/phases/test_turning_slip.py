@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from core.balls import precision
 from core.multibody.language.reading import scene_from
@@ -92,3 +95,34 @@ def test_a_spinning_top_slides_from_rest(spin: int, toe: list[object]) -> None:
         assert max(columns[name].error or 0.0 for name in columns) < 1e-11
         places.append([columns[f"top.{name}"].values for name in ("position", "velocity")])
     np.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-12)
+
+
+def test_what_slips_after_it_has_stuck_turns_from_the_first_moment_on() -> None:
+    """A block under a force F(t) that grows and turns: from |F| = mu m g on, v' = F/m - mu g v/|v|, by Radau's method.
+
+    At the start the slip is along the force, with the part of its rate of change that is along it: v = (F'.e) e t^2/2.
+    """
+    mass, gravity, mu = 2.0, 10.0, 0.25
+    block = {"mass": mass, "at": [0, 0, 0]}
+    floor = {"kind": "contact", "place": "block", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}, "friction": mu}
+    pull = {"kind": "force", "place": "block", "force": ["10*t", "6*t^2", 0]}
+    scene = {"gravity": [0, 0, -gravity], "bodies": {"block": block}, "connections": [{"name": "floor"} | floor, pull]}
+    answer = solve_scene(scene_from(scene), [0.6, 1.0])
+    (event,) = answer.events
+    start = event.time
+    force = np.array([10 * start, 6 * start**2])
+    assert (event.kind, np.hypot(*force)) == ("slip", pytest.approx(mu * mass * gravity, rel=1e-14))
+
+    def changes(time: float, state: Any) -> Any:
+        v = state[2:]
+        return [*v, *(np.array([10 * time, 6 * time**2]) / mass - mu * gravity * v / np.hypot(*v))]
+
+    along, late = force / np.hypot(*force), 1e-5
+    first = along * (np.array([10, 12 * start]) / mass @ along) * late**2 / 2
+    expected = solve_ivp(
+        changes, [start + late, 1.0], [0, 0, *first], method="Radau", rtol=1e-9, atol=1e-14, t_eval=[0.6, 1.0]
+    )
+    assert answer.trajectory is not None
+    columns = answer.trajectory.columns
+    found = np.hstack([columns[f"block.{name}"].values[:, :2] for name in ("position", "velocity")])
+    np.testing.assert_allclose(found, expected.y.T, rtol=1e-7)
