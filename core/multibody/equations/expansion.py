@@ -190,6 +190,7 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
         inverted = inverse(_lines(table, chosen)) if count + len(chosen) else None
     except ZeroDivisionError:
         raise weightless(table, range(count), lines) from None
+    plain = inverted
     places: list[Series] = [[q, v] for q, v in zip(table.q, table.v, strict=True)]
     found: list[Series] = [[] for _ in chosen]
     rates: list[Series] = [[v] for v in table.v]
@@ -206,10 +207,10 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
             changes = bool(onsets)
         if k and changes:
             try:
-                inverted = _with_onsets(table, chosen, onsets, k).inv()
+                inverted = inverse(_with_onsets(table, chosen, onsets, k))
             except ZeroDivisionError:
-                # An acceleration of rounding alone, or nothing that presses: its direction is that of the start.
-                onsets = []
+                # An acceleration of rounding alone: its direction is that of the start.
+                onsets, inverted = [], plain
             changes = any(onset.begins == 1 for onset in onsets)
         more = len(onsets) if k else 0
         right = [ZERO] * (count + len(chosen) + more)
@@ -249,18 +250,15 @@ def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> 
     return Expansion(places, multipliers)
 
 
-def _with_onsets(table: Table, chosen: Sequence[int], onsets: Sequence[Onset], k: int) -> arb_mat:
+def _with_onsets(table: Table, chosen: Sequence[int], onsets: Sequence[Onset], k: int) -> list[list[Ball]]:
     """Return the saddle with the friction across slips that begin, and what it does to them at order k."""
-    before = saddle(table, chosen)
-    size = before.nrows()
-    found = arb_mat(size + len(onsets), size + len(onsets))
-    for i in range(size):
-        for j in range(size):
-            found[i, j] = before[i, j]
+    before = _lines(table, chosen)
+    size, more = len(before), len(onsets)
+    found = [[*line, *[ZERO] * more] for line in before] + [[ZERO] * (size + more) for _ in onsets]
     for n, onset in enumerate(onsets):
         for j, x in onset.across.items():
-            found[size + n, j], found[j, size + n] = x, -x
-        found[size + n, size + n] = -onset.compliance(k)
+            found[size + n][j], found[j][size + n] = x, -x
+        found[size + n][size + n] = -onset.compliance(k)
     return found
 
 

@@ -53,8 +53,8 @@ class Onset:
         """Return the onset of a row, from its push."""
         assert row.slide is not None
         factor, along, across = row.slide
-        lines = ({j: poly[()] for j, poly in line.items()} for line in (along, across))
-        return cls(factor, *lines, push, row.begins)
+        first, second = ({j: poly[()] for j, poly in line.items()} for line in (along, across))
+        return cls(factor, first, second, push, row.begins)
 
     def drag(self, k: int) -> Ball:
         """Return what the turning until order k adds to the friction along the first line."""

@@ -402,8 +402,10 @@ def _packed_slides(table: Table, chosen: Sequence[int], units: Units, before: in
         for line, numbers in zip((along, across), lines, strict=True):
             numbers.extend(pair(line.get(j, {}).get((), ZERO), units.lengths[j] + units.rows[r]) for j in own)
         coordinates.extend(own)
-    along, across = map(_numbers, lines)
-    return PackedSlides(_indices(at, 4), np.array(coordinates, dtype=np.int64), along, across, _numbers(factors), 0)
+    forms = [_numbers(line) for line in lines]
+    return PackedSlides(
+        _indices(at, 4), np.array(coordinates, dtype=np.int64), forms[0], forms[1], _numbers(factors), 0
+    )
 
 
 def _packed_laws(table: Table, units: Units) -> PackedLaws:
