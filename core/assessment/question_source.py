@@ -36,7 +36,7 @@ class Source(Protocol):
         """Return the declared unit of a figure."""
 
     def units_of_request(self, request: Any) -> Callable[[Path], str | None]:
-        """Return a function from the path of a number of a request to the unit that it is written in, None if unknown."""
+        """Return a function from the path of a number of a request to its written unit, None if unknown."""
 
     def scales(self, answer: Mapping[str, Any], request: Any) -> Mapping[str, float]:
         """Return, by unit, the largest magnitude of an answer's numbers; of the request's where those are 0."""

@@ -90,7 +90,7 @@ class RouteSource:
         return unit_at(self.route.answer, path)
 
     def units_of_request(self, request: Any) -> Callable[[Path], str | None]:
-        """Return a function from the path of a number of a request to the unit that it is written in, None if unknown."""
+        """Return a function from the path of a number of a request to its written unit, None if unknown."""
         question = self.read(json.dumps(request).encode())
         return lambda path: question.unit_of(path)
 
