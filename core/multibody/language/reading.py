@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import MISSING, Field, fields
-from functools import cache
+from dataclasses import MISSING, fields
 from typing import Any
 
 from core.errors import InvalidParameter, Path
@@ -67,7 +66,8 @@ def _connection(entry: Any, path: Path, kinds: Mapping[str, type[Connection]]) -
 def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
     if not isinstance(value, Mapping):
         raise InvalidParameter(path or ("scene",), "be an object")
-    known = _fields_of(cls)
+    # A word of Python's has a sign behind it as the name of a field.
+    known = {entry.name.rstrip("_"): entry for entry in fields(cls)}
     for key in value:
         if key not in known:
             raise unknown_field(key, known, path)
@@ -75,13 +75,6 @@ def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
         if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
             raise InvalidParameter((*path, name), "be given")
     return {known[key].name: entry for key, entry in value.items()}
-
-
-@cache
-def _fields_of(cls: type[Any]) -> dict[str, Field[Any]]:
-    """Return the fields of a dataclass by the names that clients write."""
-    # A word of Python's has a sign behind it as the name of a field.
-    return {entry.name.rstrip("_"): entry for entry in fields(cls)}
 
 
 def unknown_field(key: str, known: Collection[str], path: Path) -> InvalidParameter:
