@@ -7,6 +7,7 @@ const EVENTS = {
   touch: "touches", "lift-off": "lifts off", slip: "begins to slip", stick: "sticks", roll: "rolls without slipping", settle: "has come to rest after ever smaller bounces",
   taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "has come to a length of zero",
   "no-motion": "has no possible motion", "several-motions": "has several possible motions", "end-of-chain": "has come to its end", switch: "changes its law",
+  begin: "begins to act", end: "acts no more", impulse: "strikes", "cannot-begin": "cannot begin where it should",
 };
 const DIGITS = 3, SAME = 1e-9;
 /** Digits of numbers in sentences; relative difference below which two are called equal. */
@@ -111,7 +112,7 @@ function tipping(event, model) {
   return `${sentence(body.name)} tips about its ${side} edge ${event.time > 0 ? `after ${seconds(event.time)}` : "at once"}.`;
 }
 
-const MENTIONED = new Set(["touch", "lift-off", "slip", "stick", "roll", "settle", "taut", "slack", "stop", "release", "singular", "end-of-chain", "switch"]);
+const MENTIONED = new Set(["touch", "lift-off", "slip", "stick", "roll", "settle", "taut", "slack", "stop", "release", "singular", "end-of-chain", "switch", "begin", "end", "impulse"]);
 
 /** Headline of an answer; `model` is its scene, whose time may be moved. */
 export function headline(answer, model, stop) {

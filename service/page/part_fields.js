@@ -54,6 +54,7 @@ export const CONNECTION_FIELDS = {
   relation: [{ name: "of", words: "Formula", type: "text" }, number("equals", "Equals", "", { optional: true, open: true })],
   "spinning-frame": [number("rate", "Rate", "rad/s")],
   field: [],
+  impulse: [place("place", "On"), place("body", "Or turns"), vector("impulse", "Impulse", "N s"), number("at", "At", "s", { optional: true, open: true })],
 };
 
 /** Of a face: its own, and those of everything that touches it. */

@@ -62,12 +62,13 @@ export const connectionPart = (label) => `connection:${label}`;
  */
 export function drawingOf(model, look) {
   const d = new Drawing(look.px, look.view);
+  const acting = model.connections.filter((c) => model.acts(c));
   if (look.trails !== false) trails(d, model);
-  for (const c of model.connections) d.of(connectionPart(c.label), () => drawGround(d, model, c));
+  for (const c of acting) d.of(connectionPart(c.label), () => drawGround(d, model, c));
   if (look.ghosts) ghosts(d, model, look.ghosts);
-  for (const c of model.connections) d.of(connectionPart(c.label), () => drawConnection(d, model, c));
+  for (const c of acting) d.of(connectionPart(c.label), () => drawConnection(d, model, c));
   for (const body of model.bodies) d.of(bodyPart(body.name), () => drawBody(d, model, body));
-  for (const c of model.connections) d.of(connectionPart(c.label), () => drawJoint(d, model, c));
+  for (const c of acting) d.of(connectionPart(c.label), () => drawJoint(d, model, c));
   if (look.names) for (const body of model.bodies) d.words(add(body.at, [10 * d.px, 12 * d.px]), body.name, "ink");
   if (look.forces) arrows(d, model.arrows(), model.forceScale, "warm", look.values && "N");
   if (look.velocities) arrows(d, model.rates("velocity"), model.largestRate("velocity"), "deep", look.values && "m/s");

@@ -5,8 +5,10 @@ import { stringPath } from "./string_path.js";
 import { add, dot, norm, quarter, rotated, scaled, sub, turnBetween, turned, unit } from "./vectors.js";
 
 export class SceneModel {
-  /** `description` as sent; `trajectory` as answered, null for a scene without motion. */
-  constructor(description, trajectory) {
+  /** `description` as sent; `trajectory` and `events` as answered, null for a scene without motion. */
+  constructor(description, trajectory, events = []) {
+    this.answered = trajectory !== null;
+    this.changes = events.filter(({ kind }) => kind === "begin" || kind === "end");
     this.numbers = new Numbers(description.let);
     this.description = description;
     this.columns = trajectory?.columns || {};
@@ -147,6 +149,13 @@ export class SceneModel {
       this.seek(now);
     }
     return this.reaches.get(connection);
+  }
+
+  /** Whether a connection acts now, between its beginning and its end; without an answer all are shown. */
+  acts(c) {
+    if (!this.answered) return true;
+    const last = this.changes.filter(({ name, time }) => name === c.label && time <= this.now).at(-1);
+    return last ? last.kind === "begin" : c.from === undefined;
   }
 
   /** Put the scene to a time. */

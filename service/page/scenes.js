@@ -285,7 +285,7 @@ function show({ answer: next, text }, how, path) {
   const value = JSON.parse(text);
   const { description, trajectory } = isNamed(state.scene) ? drawn(state.scene, value, answer) : { description: value, trajectory: answer.trajectory };
   answer.shown = trajectory;
-  model = new SceneModel(description, trajectory);
+  model = new SceneModel(description, trajectory, answer.events);
   const time = trajectory?.time || [0], events = (answer.events || []).map((e) => ({ ...e, label: sayEvent(e) }));
   const stop = Math.max(time.at(-1), ...events.map((e) => e.time || 0)), still = !(stop > 0);
   $("player").hidden = $("curves-line").hidden = still;

@@ -152,7 +152,10 @@ export class SpaceView extends View {
     const looks = { rod: ["ink", 0.014], spring: ["stable", 0.02], damper: ["soft", 0.02] };
     if (looks[c.kind]) {
       const stick = this.add(this.stick(...looks[c.kind]));
-      this.parts.push(() => stretch(stick, at(c.a), at(c.b)));
+      this.parts.push(() => {
+        stick.visible = this.model.acts(c);
+        stretch(stick, at(c.a), at(c.b));
+      });
     }
     if (c.kind === "string") {
       const sticks = c.through.slice(1).map(() => this.add(this.stick("warm", 0.008)));

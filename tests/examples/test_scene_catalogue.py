@@ -26,6 +26,7 @@ MASSES = (
     "coefficient",
     "strength",
     "force",
+    "impulse",
     "torque",
     "law",
     "density",
@@ -57,6 +58,14 @@ def solved(question: Any, *, factor: float = 1.0) -> Any:
     return solve_scene(scene_from(scene), times, DEFAULT_OUTPUTS)
 
 
+def of_heavier(occasion: Any) -> Any:
+    """Return an occasion of the same scene with four times the mass: a tension is four times as large."""
+    when = occasion.get("when", {}) if isinstance(occasion, dict) else {}
+    if not when.get("quantity", "").endswith(".tension"):
+        return occasion
+    return {"when": when | {"equals": times_four(when["equals"])}}
+
+
 def times_four(value: Any) -> Any:
     return [times_four(entry) for entry in value] if isinstance(value, list) else f"4*({value})"
 
@@ -85,6 +94,7 @@ def test_its_model_is_found_and_four_times_the_mass_under_other_names_moves_alik
         if "constant" in fields:
             # Attraction grows with the square of the masses.
             stiffer["constant"] = f"({fields['constant']})/4"
+        stiffer |= {key: of_heavier(stiffer[key]) for key in ("from", "until") if key in stiffer}
         other["connections"].append({"name": f"{fields['kind']}-{i + 1}"} | stiffer)
     second = solved(other)
     assert second.model.name == first.model.name
@@ -132,7 +142,7 @@ def mirrored(question: Any) -> Any:
     for fields in question.get("connections", []):
         found: dict[str, Any] = {}
         for key, value in fields.items():
-            if key in ("a", "b", "place", "force") and not isinstance(value, str):
+            if key in ("a", "b", "place", "force", "impulse") and not isinstance(value, str):
                 found[key] = reflected(value)
             elif key in ("rate", "rest_angle", "slope", "torque"):
                 found[key] = negative(value)

@@ -63,7 +63,7 @@ def lagrange_equations(chart: Chart, force_names: Sequence[str], multipliers: Se
         forces[i].append((places[j] * rates[k]).times(x))
     for law, name in zip(table.acting, force_names, strict=True):
         for i, x in law.push.items():
-            forces[i].append(Sum.variable(name).times(x))
+            forces[i].append(Sum.variable(name).times(x / law.scale))
     for row, name in zip(chart.rows, multipliers, strict=True):
         for line in (row.rates, row.drag):
             for i, poly in line.items():

@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from core.formulas import Node, names_of
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.formulation.chart import Chart
-from core.multibody.formulation.formula_nodes import call, node_of_sum
+from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
 from core.multibody.formulation.trigonometric_sums import TIME, Sum
 from core.multibody.formulation.unused_names import unused
 from core.multibody.language.motion_formulas import LENGTH
@@ -30,7 +30,8 @@ def force_symbols(laws: Sequence[Law], taken: Collection[str]) -> list[str]:
 
 def law_nodes(chart: Chart, names: Sequence[str]) -> dict[str, Node]:
     """Return the formulas of the laws of a chart's table in its variables, by the names of their values."""
-    return {name: _node(law.root, law, chart) for name, law in zip(names, chart.table.acting, strict=True)}
+    laws = zip(names, chart.table.acting, strict=True)
+    return {name: node_of_terms([(law.scale, [_node(law.root, law, chart)])]) for name, law in laws}
 
 
 def _node(node: Node, law: Law, chart: Chart) -> Node:

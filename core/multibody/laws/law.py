@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from core.errors import Path
 from core.formulas import Node
-from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, substituted
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, evaluated, substituted
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,8 @@ class Law:
         Force on each coordinate where the value is one.
     in_table : bool
         Whether its forces are entries of b and D, so that only its value is of interest.
+    scale : ball
+        Constant factor of what was written, which stands in the push: with it the formula is a force again.
     """
 
     name: str
@@ -61,6 +63,7 @@ class Law:
     numbers: Mapping[str, Ball] = field(default_factory=dict)
     push: Mapping[int, Ball] = field(default_factory=dict)
     in_table: bool = False
+    scale: Ball = ONE
 
     def coordinates(self) -> set[int]:
         """Return the coordinates that it depends on or pushes."""

@@ -26,7 +26,8 @@ def merged(laws: Iterable[Law]) -> list[Law]:
             else:
                 push = found[k].push
                 total = {i: entry(push, i) + entry(term.push, i) for i in {**push, **term.push}}
-                found[k] = replace(found[k], push=total)
+                scale = term.scale if is_zero(found[k].scale) else found[k].scale
+                found[k] = replace(found[k], push=total, scale=scale)
     kept = (replace(law, push={i: x for i, x in law.push.items() if not is_zero(x)}) for law in found)
     return [law for law in kept if law.push]
 
@@ -45,6 +46,7 @@ def _terms_of(law: Law) -> list[Law]:
             root=root,
             inputs={name: one for name, one in law.inputs.items() if name in _names(root)},
             push={i: factor * x for i, x in law.push.items()},
+            scale=factor * law.scale,
         )
         for factor, root in terms
     ]

@@ -31,6 +31,7 @@ from core.multibody.start import (
     slack_strings,
 )
 from core.multibody.statics.equilibria import equilibria_of
+from core.multibody.table.description import Described
 from core.multibody.trajectory.scene_request import SceneRequest
 
 THRESHOLDS = "thresholds"
@@ -70,7 +71,7 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
         model,
         accelerations if "accelerations" in outputs else None,
         forces if "forces" in outputs else None,
-        replace(energy_of(motion.base), conserved=_conserved(motion)) if "energy" in outputs else None,
+        replace(energy_of(_first(motion)), conserved=_conserved(motion)) if "energy" in outputs else None,
         trajectory,
         None if repeats is None else repeats.period,
         None if repeats is None or repeats.errors is None else repeats.errors.period,
@@ -89,6 +90,12 @@ def answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descri
         equations=equations,
     )
     return answer, system
+
+
+def _first(motion: PhaseMotion) -> Described:
+    """Return the scene with the state of its start: that after blows which fall there."""
+    struck = motion.base.scene.changes and motion.phases
+    return motion.phases[0].models[0].described if struck else motion.base
 
 
 def _equations(scene: Scene, motion: PhaseMotion, request: SceneRequest) -> SceneEquations | None:

@@ -31,18 +31,20 @@ CONSERVED = {
         1: """
             atwood-machine atwood-machine-with-spring ball-in-cylinder ball-on-ball-dropped bead-on-hoop
             bead-on-parabola bead-on-rotating-rod block-and-tackle block-tips-over rocking-block
-            blocks-on-incline
+            blocks-on-incline breaking-string
             bounce-to-rest chain-off-table chain-over-peg cradle-of-two cylinder-in-cylinder
             cylinder-on-incline disc-leaves-cylinder double-atwood-machine double-pendulum
             double-pendulum-of-points dumbbell-dropped dumbbell-dropped-in-space elastic-pendulum
             harmonic-ellipse inverted-pendulum-on-torsion-spring ladder-leaves-wall ladder-on-rails
-            loaded-hoop loop-with-slack-string massive-pulley movable-wedge pendulum-on-cart pendulum-timed
+            loaded-hoop loop-with-slack-string massive-pulley
+            movable-wedge pendulum-on-a-nail pendulum-on-cart pendulum-timed
             physical-pendulum rod-against-stop shafts-on-wedge simple-pendulum spool spool-rolls-away
-            spool-winds-up stone-leaves-hollow-sphere swinging-atwood-machine trammel two-masses-two-springs
+            spool-winds-up stone-leaves-hollow-sphere struck-rod swinging-atwood-machine trammel two-masses-two-springs
             weight-lands yo-yo
         """,
         2: """
-            alpha-particle asymmetric-top ball-and-stick billiard-ball blocks-count-pi conical-pendulum
+            alpha-particle asymmetric-top ball-and-stick
+            ballistic-pendulum billiard-ball blocks-count-pi conical-pendulum
             cylinder-on-cylinder cylinder-on-movable-wedge foucault-pendulum gyroscope-with-offset-mass
             kepler-ellipse kovalevskaya-top lagrange-top precessing-top sphere-on-incline spherical-pendulum
             spinning-disc-bounces vibrating-dumbbell weight-under-table
@@ -75,13 +77,15 @@ CLOSED = {
         1: """
             atwood-machine ball-and-stick ball-on-ball-dropped bead-on-rotating-rod block-and-tackle
             block-tips-over blocks-count-pi blocks-on-incline bounce-to-rest chain-off-table chain-over-peg
-            cradle-of-two cylinder-in-cylinder cylinder-on-incline damped-oscillator disc-leaves-cylinder
+            breaking-string cradle-of-two cylinder-in-cylinder
+            cylinder-on-incline damped-oscillator disc-leaves-cylinder
             dumbbell-dropped dumbbell-dropped-in-space ladder-leaves-wall ladder-on-rails loop-with-slack-string
-            massive-pulley pendulum-timed physical-pendulum rocking-block rod-against-stop simple-pendulum spool
-            spool-rolls-away spool-winds-up stone-leaves-hollow-sphere weight-lands yo-yo
+            massive-pulley pendulum-on-a-nail pendulum-timed physical-pendulum
+            rocking-block rod-against-stop simple-pendulum spool
+            spool-rolls-away spool-winds-up stone-leaves-hollow-sphere struck-rod weight-lands yo-yo
         """,
         2: """
-            band-brake binary-stars block-on-spring-with-friction block-up-rough-incline
+            ballistic-pendulum band-brake binary-stars block-on-spring-with-friction block-up-rough-incline
             cylinder-on-movable-wedge
             double-atwood-machine harmonic-ellipse movable-wedge rope-on-bollard sphere-on-incline
             spinning-disc-bounces two-masses-two-springs

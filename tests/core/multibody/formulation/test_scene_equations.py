@@ -277,6 +277,15 @@ def test_a_clock_that_nothing_reads_at_the_start_is_not_written() -> None:
     assert [one.plain for one in found.equations] == ["p.x'' = 1.5"]
 
 
+def test_a_force_by_formula_is_the_force_with_its_factors() -> None:
+    force = {"kind": "force", "name": "f", "place": "body", "force": ["2*t", 0]}
+    scene = scene_from({"bodies": {"body": {"mass": 4, "at": [0, 0]}}, "connections": [force]})
+    found = solve_scene(scene, (), ("equations",)).equations
+    assert found is not None
+    assert plain(found.forces["f.force"].sides[0]) == "2*t"
+    assert [[plain(side) for side in one.sides] for one in found.equations] == [["body.x''", "0.25*f.force"]]
+
+
 def test_pieces_of_formulas_are_written_as_they_are_at_the_start() -> None:
     """A table between its first two points, in digits of doubles."""
     push = {"points": [[0, 1], [1, 2], [2, 0]], "interpolation": "cubic"}
