@@ -403,8 +403,10 @@ TESTED_IN |= {
             "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"
         ),
         "motion/test_numerical": (
-            "equations/packed motion/products motion/returns motion/series motion/series_pairs motion/vertical_symmetry"
+            "equations/packed motion/products motion/returns motion/run motion/series motion/series_pairs"
+            " motion/vertical_symmetry"
         ),
+        "motion/test_stiff": "motion/collocation motion/linearised motion/radau",
         "equations/test_saddle": "algebra/square_inverse equations/schur_complement",
         "phases/test_phase_answer": "phases/phase_states phases/phase_columns",
         "phases/test_described_system": "phases/method_samples phases/smooth_motion trajectory/scene_request",

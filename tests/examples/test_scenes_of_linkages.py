@@ -18,6 +18,7 @@ from mpmath import diff, mp, mpf, pi
 from mpmath import log as mp_log
 from mpmath import sin as mp_sin
 from mpmath import sqrt as mp_sqrt
+from scipy.integrate import solve_ivp
 
 from tests.examples.scene_columns import agree, columns, in_time, observed, stated, swing, swinging, times
 from tests.oracles.minimal_coordinates import cos, exact, motion, sin, sqrt
@@ -190,6 +191,24 @@ def test_the_centrifugal_governor(answer_of):
         assert one["modes"][0]["frequency"] == pytest.approx(square**0.5, rel=1e-12)
     # Each ball to the left or to the right.
     assert len(open_ones) == 4
+
+
+def test_the_damped_governor(answer_of):
+    """Lagrange's equation of the angle of its rods, by scipy's implicit method of order 5 to 1e-11."""
+    answer = answer_of("scenes/damped-governor")
+
+    def change(_, state):
+        a, rate = state
+        s, c = np.sin(a), np.cos(a)
+        # The spring is 3 - cos(a) long, and the damper as well.
+        slope = 3 * G * s - 50 * s * c + 8e4 * (3 - c - 2.4) * s
+        return [rate, (-slope - 4e4 * (s * rate) * s - 2 * s * c * rate**2) / (0.5 + 2 * s * s)]
+
+    asked = times(answer)
+    right = solve_ivp(change, (0, asked[-1]), [np.arcsin(0.6), 0], "Radau", asked, rtol=1e-11, atol=1e-13).y
+    found = columns(answer)
+    assert np.abs(found["sleeve.position"][:, 1] + np.cos(right[0])).max() < 1e-12
+    assert np.abs(found["sleeve.velocity"][:, 1] - np.sin(right[0]) * right[1]).max() < 1e-11
 
 
 def test_the_rod_in_a_cylinder_agrees_with_the_named_scene(answer_of):

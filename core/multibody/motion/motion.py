@@ -194,6 +194,17 @@ class Motion(Protocol):
         """Its table and units for compiled code, where it is integrated."""
         return None
 
+    def steps_about(
+        self, times: Floats, reach: Floats, kind: str, order: int
+    ) -> tuple[tuple[Floats, Floats], Floats, Floats] | None:
+        """Return the polynomials of its own steps about times of shape (p,) in SI units, of one kind of run.
+
+        Lengths of pieces, which are powers of two and no longer than a reach (s) needs, and how long they could be;
+        coefficients of powers of time as a share of the length, shape (p, n, order + 1, 2); the largest one of the same
+        unit and power. None where the Taylor series of its equations is as good.
+        """
+        return None
+
     @property
     def is_faster_in_doubles(self) -> bool:
         """Whether a closed form is evaluated faster to a few roundings of doubles."""

@@ -10,18 +10,17 @@ from functools import cached_property
 import numpy as np
 
 from core.arrays import Floats, Integers
-from core.errors import AccuracyUnreachable, BudgetExceeded
+from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
 from core.multibody.motion.lost_rank import KEPT, first_lost, lines_that_may_depend
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.other_rows import rows_for
-from core.multibody.motion.series import DONE, FULL, LOST, SLOWED, STUCK, advance, placed, sampled
-from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
+from core.multibody.motion.run import GivenUp, Run, evaluate, run_by
+from core.multibody.motion.series import STUCK, advance, placed
+from core.multibody.motion.series_pairs import advance_pairs
+from core.multibody.motion.stiff import collocated, dissipates, limiting_decay, pieces_of_steps, rates_of_decay
 from core.multibody.table.table import Table
-
-MOST_STEPS = 20000
-"""Steps that one part of a scene may take in one direction of time."""
 
 _SAME_PLACE = 1e-3
 """Relative difference of the times at which doubles and pairs may meet one singular place."""
@@ -39,6 +38,10 @@ power 2/3 of the time that is left, to 1e-8 where steps are the shortest, and ar
 
 DOUBLES_SHARE, FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
+_STIFF_SHARE = 1.0
+"""The same of stiff motions: steps that are short for other reasons leave both runs as wrong as one another."""
+
+OnTheWay = Callable[[Floats, Floats, float, float], None]
 
 FINE_MARGIN, GROWTH = 4.0, 2.0**-50
 """Factor of the difference of two runs in pairs, and share of the errors of doubles, which tell how rounding grows."""
@@ -58,52 +61,6 @@ CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
 
 
 @dataclass
-class Run:
-    """Steps in one direction: where they start, their coefficients, and whether a singular place ended them.
-
-    Attributes
-    ----------
-    starts : ndarray, shape (s + 1, 2)
-        Times, as pairs, and the end of the last step.
-    series : ndarray, shape (s, n, order + 1) or (s, n, order + 1, 2)
-    singular : bool
-    slowed : bool
-        Whether a slip that may end is beyond the unit of time.
-    room : ndarray or None
-        What the series is the first part of, where there is room for more.
-    """
-
-    starts: Floats
-    series: Floats
-    singular: bool = False
-    slowed: bool = False
-    room: Floats | None = field(default=None, repr=False)
-
-    @property
-    def end(self) -> float:
-        """Time reached."""
-        return float(self.starts[-1, 0])
-
-    def followed_by(self, more: Run) -> Run:
-        """Return the run whose last step, which ended at a time that was asked for, is replaced by those of another."""
-        kept, total, room = len(self.series) - 1, len(self.series) - 1 + len(more.series), self.room
-        if room is None or len(room) < total:
-            # Twice as much, so that a run which grows step by step is not copied for each.
-            room = np.empty((2 * total, *self.series.shape[1:]))
-            room[:kept] = self.series[:kept]
-        room[kept:total] = more.series
-        starts = np.concatenate([self.starts[:kept], more.starts])
-        return Run(starts, room[:total], more.singular, more.slowed, room)
-
-    def which(self, times: Floats) -> Integers:
-        """Return the step in which each time lies."""
-        starts = self.starts[:, 0]
-        forward = starts[-1] >= starts[0]
-        found = np.searchsorted(starts if forward else -starts, times if forward else -times, side="right") - 1
-        return np.clip(found, 0, len(self.series) - 1).astype(np.int64)
-
-
-@dataclass
 class Numerical(Motion):
     """A part that has no closed form.
 
@@ -113,6 +70,8 @@ class Numerical(Motion):
         The rows of the table that are in the arrays.
     rows : ndarray of int
         Numbers, among these, of those that may come to depend on one another.
+    stiff : bool
+        Whether the time after the start is followed by collocation.
     """
 
     table: Table
@@ -124,6 +83,9 @@ class Numerical(Motion):
     period: Ball | None = None
     lost_to_doubles: bool = False
     rows: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
+    stiff: bool = False
+    _examined: bool = field(default=False, repr=False)
+    _other: tuple[str, str] = field(default=("", ""), repr=False)
     _runs: dict[tuple[str, int], Run] = field(default_factory=dict, repr=False)
     _met: list[Floats] = field(default_factory=list, repr=False)
 
@@ -154,20 +116,54 @@ class Numerical(Motion):
         found = self._runs.get(key)
         if found is not None and (abs(found.end) >= abs(end) or found.singular):
             return found
-        self._runs[key] = self.steps(kind, end, found)
+        try:
+            if key[1] == 1:
+                self._examine(self._rates_at_start, end)
+            self._runs[key] = self.steps(kind, end, found)
+        except GivenUp:
+            # Runs by another method differ by their errors, and are made anew.
+            self._runs.clear()
+            self.stiff, self._examined = not self.stiff, True
+            (self.name, self.why), self._other = self._other, (self.name, self.why)
+            return self.run(kind, end)
         return self._runs[key]
 
     def steps(self, kind: str, end: float, since: Run | None = None) -> Run:
         """Take steps to a time in the units of the arrays, from the start, or on from a run that does not reach it."""
-        if since is not None and kind != "doubles":
+        if since is not None and since.series.ndim == 4:
             # Searches go on and on: what they have behind them is not computed again. The series of doubles do not
             # hold what their compensated sums left.
-            more = integrate(self.table, self.arrays, self.units, kind, end, since)
+            more = self._followed(kind, end, since)
             if more.starts[-1, 0] != more.starts[0, 0]:
                 found = since.followed_by(up_to_lost_rank(self.arrays, self.rows, more))
                 return self.steps(kind, end) if found.singular and self._takes_other_rows(found) else found
-        found = up_to_lost_rank(self.arrays, self.rows, integrate(self.table, self.arrays, self.units, kind, end))
+        found = up_to_lost_rank(self.arrays, self.rows, self._followed(kind, end))
         return self.steps(kind, end) if found.singular and self._takes_other_rows(found) else found
+
+    def _followed(self, kind: str, end: float, since: Run | None = None) -> Run:
+        if self.stiff and end > 0.0:
+            return collocated(self.table, self.arrays, self.units, kind, end, since)
+        return integrate(self.table, self.arrays, self.units, kind, end, since, self._examined_on_the_way)
+
+    @cached_property
+    def _rates_at_start(self) -> Floats | None:
+        """Rates of decay, None where nothing decays."""
+        return rates_of_decay(self.arrays, *state(self.table, self.units)) if dissipates(self.arrays) else None
+
+    def _examined_on_the_way(self, q: Floats, v: Floats, end: float, steps: float) -> None:
+        """Examine once more where what is at the start does not say how many steps all of the time takes."""
+        if end > 0.0 and dissipates(self.arrays):
+            self._examine(rates_of_decay(self.arrays, q, v), end, steps)
+
+    def _examine(self, rates: Floats | None, end: float, steps: float | None = None) -> None:
+        """Raise `GivenUp` where the motion up to a time is stiff, and was not known to be."""
+        decay = None if self._examined or self.stiff else limiting_decay(rates, end, steps)
+        if decay is None:
+            return
+        fast = decay * two_to(-self.units.time)
+        limited = f"what decays at {fast:.3g} 1/s would limit the steps of its Taylor series, and not the motion"
+        self._other = "collocation", f"{self.why}; {limited}"
+        raise GivenUp
 
     def _takes_other_rows(self, run: Run) -> bool:
         """Take rows that keep their rank where a run ends, and before where others did; return whether there are."""
@@ -189,9 +185,9 @@ class Numerical(Motion):
         """Return the states, and how far they are from a run in pairs."""
         names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "reference")
         (q, v), (other, rate) = (self.by(kind, times) for kind in names)
-        share = DOUBLES_SHARE if names[0] == "doubles" else FINE_SHARE
+        share = _STIFF_SHARE if self.stiff else DOUBLES_SHARE if names[0] == "doubles" else FINE_SHARE
         q_error, v_error = (self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
-        if self.lost_to_doubles:
+        if self.lost_to_doubles or self.stiff:
             q_error, v_error = 16.0 * q_error, 16.0 * v_error
         elif finer:
             coarse = self.states(times)
@@ -230,6 +226,15 @@ class Numerical(Motion):
                 q[way], v[way] = evaluate(run, chosen)
         up = self.units.up[None, :, None]
         return q * up, v * up * two_to(-self.units.time)
+
+    def steps_about(
+        self, times: Floats, reach: Floats, kind: str, order: int
+    ) -> tuple[tuple[Floats, Floats], Floats, Floats] | None:
+        """Return the polynomials of its own steps about times, where the motion is stiff."""
+        run = self.run(kind, float(np.max(times + reach)) * two_to(-self.units.time)) if reach[0] > 0.0 else None
+        if run is None or not self.stiff:
+            return None
+        return pieces_of_steps(run, self.arrays.group, self.units, times, reach, order)
 
     def places_in_doubles(self, times: Floats) -> Floats:
         """Return coordinates alone, shape (t, n), without a reference: enough to count turns."""
@@ -313,8 +318,21 @@ class Numerical(Motion):
         return two_to(-self.units.lengths[inverse[0]]) / float(nearest) if nearest > COLLIDED else None
 
 
-def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float, since: Run | None = None) -> Run:
+def integrate(
+    table: Table,
+    arrays: Packed,
+    units: Units,
+    kind: str,
+    end: float,
+    since: Run | None = None,
+    on_the_way: OnTheWay | None = None,
+) -> Run:
     """Take steps to a time in the units of the arrays, from the start, or from where the last step of a run starts.
+
+    Parameters
+    ----------
+    on_the_way : callable, optional
+        Called with places, rates, the time to be reached and the steps that this takes; it gives up a stiff motion.
 
     Raises
     ------
@@ -322,6 +340,8 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float,
         Where more steps would be needed than one part may take.
     AccuracyUnreachable
         Where the motion leaves the range of doubles, or a formula does not say how it goes on.
+    GivenUp
+        Where another method is better.
     """
     order, tolerance = {
         "doubles": (ORDER, TOLERANCE),
@@ -352,60 +372,12 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float,
             )
         return ended, count
 
-    return run_by(steps, start, shape, max(16, _CHUNK // (16 * len(q) * (order + 1))), clock, before)
+    def examined(taken: int) -> None:
+        if on_the_way is not None:
+            on_the_way(q, v, end, taken * end / clock[0])
 
-
-def run_by(
-    steps: Callable[[Floats, Floats, Floats], tuple[int, int]],
-    start: tuple[Floats, Floats],
-    shape: tuple[int, ...],
-    many: int,
-    clock: Floats | None = None,
-    before: int = 0,
-) -> Run:
-    """Return a run by a function that takes steps until its arrays are full.
-
-    Parameters
-    ----------
-    steps : callable
-        Moves a clock, fills in where steps start and their series; it returns how it ended, and the number of steps.
-    start : tuple of two ndarrays
-        Places and rates at the start.
-    shape : tuple of int
-        Of the series of one step.
-    many : int
-        Steps for which there is room at once.
-    clock : ndarray, shape (2,), optional
-        When they start, as a pair; moved along. Zero if omitted.
-    before : int
-        How many were taken until then.
-
-    Raises
-    ------
-    BudgetExceeded, AccuracyUnreachable
-        As `integrate`.
-    """
-    clock = np.zeros(2) if clock is None else clock
-    starts, series = [], []
-    taken, ended = 0, FULL
-    while ended == FULL:
-        if before + taken > MOST_STEPS:
-            raise BudgetExceeded("steps", before + taken, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
-        chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
-        ended, count = steps(clock, chunk_starts, chunk)
-        starts.append(chunk_starts[:count])
-        series.append(chunk[:count])
-        taken += count
-    if ended == LOST:
-        raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
-    starts.append(clock[None, :].copy())
-    if not taken:
-        # A run of no duration has one step, so that the start can be evaluated.
-        single = np.zeros((1, *shape))
-        single[0, :, 0], single[0, :, 1] = start
-        return Run(np.array([clock, clock]), single, ended not in (DONE, SLOWED), ended == SLOWED)
-    found = series[0] if len(series) == 1 else np.concatenate(series)
-    return Run(np.concatenate(starts), found, ended not in (DONE, SLOWED), ended == SLOWED)
+    many = max(16, _CHUNK // (16 * len(q) * (order + 1)))
+    return run_by(steps, start, shape, many, clock, before, examined)
 
 
 def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:
@@ -433,27 +405,3 @@ def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:
     starts = run.starts[: step + 2].copy()
     starts[-1] = starts[step] + [time, 0.0]
     return Run(starts, run.series[: step + 1], singular=True)
-
-
-def evaluate(run: Run, times: Floats, tails: Floats | None = None) -> tuple[Floats, Floats]:
-    """Return places and rates at times in the units of the arrays, as pairs of shape (t, n, 2).
-
-    Parameters
-    ----------
-    tails : ndarray, shape (t,), optional
-        What is left of the times beyond doubles, for a run in pairs.
-    """
-    n = run.series.shape[1]
-    which = run.which(times)
-    q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
-    if run.series.ndim == 3:
-        first, second = np.empty((len(times), n)), np.empty((len(times), n))
-        sampled(run.starts, run.series, np.ascontiguousarray(times), which, first, second)
-        q[..., 0], v[..., 0] = first, second
-    else:
-        paired = np.zeros((len(times), 2))
-        paired[:, 0] = times
-        if tails is not None:
-            paired[:, 1] = tails
-        sampled_pairs(run.starts, run.series, paired, which, q, v)
-    return q, v

@@ -28,10 +28,10 @@ from core.multibody.motion.numerical import (
     CHECK_TOLERANCE,
     FINE_ORDER,
     FINE_TOLERANCE,
-    Run,
     up_to_lost_rank,
 )
 from core.multibody.motion.returns import PLACES, POWER, RATES, Passage, Section, added, distance, followed
+from core.multibody.motion.run import Run
 from core.multibody.motion.series_pairs import moved_pairs
 from core.multibody.table.table import Table
 

@@ -24,7 +24,7 @@ from core.multibody.algebra.bernstein import (
 )
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.equations.packed import Packed
-from core.multibody.motion.numerical import Run
+from core.multibody.motion.run import Run
 from core.multibody.motion.series import FULL
 from core.multibody.motion.series_pairs import advance_pairs, moved_pairs
 

@@ -69,8 +69,14 @@ def at_state(table: Packed, q: Floats, v: Floats, rates: Floats, lines: Floats) 
 
 
 @kernel()
-def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: int) -> None:
-    """Fill in the Taylor coefficients of the path up to until + 1 in pairs, and the others in doubles."""
+def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: int, known: Floats) -> None:
+    """Fill in the Taylor coefficients of the path up to until + 1 in pairs, and the others in doubles.
+
+    Parameters
+    ----------
+    known : (planes, orders * size)
+        The path where it is known otherwise, so that multipliers alone are wanted; of no columns where it is not.
+    """
     n, m = table.load.shape[0], table.rate.shape[0]
     at, factor, high, low, columns = products.at, products.factor, products.sums[0], products.sums[1], space.columns
     path, right, size = products.path, products.right, products.right.shape[1]
@@ -114,6 +120,13 @@ def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: 
                 put_lanes(now, size + b, ul if plane else uh)
                 put_lanes(now, 2 * size + b, sl if plane else sh)
                 put_lanes(path[plane], (k + 2) * size + b, ql if plane else qh)
+        if known.shape[1] > 0:
+            for i in range(n):
+                qh, ql = known[0, (k + 2) * size + i], known[1, (k + 2) * size + i]
+                uh, ul = dd_mul_d(qh, ql, k + 2.0)
+                path[0, (k + 2) * size + i], path[1, (k + 2) * size + i] = qh, ql
+                products.now[0, i], products.now[1, i] = qh, ql
+                products.now[0, size + i], products.now[1, size + i] = uh, ul
         if k < last:
             spread_pairs(table, products, k)
     coefficients(table, space, products, until)
@@ -267,6 +280,7 @@ def advance_pairs(
     # Coefficient k is to about tolerance^(k / order) of the first ones: doubles do for those of the last digits.
     bits = -math.log2(tolerance)
     paired = min(max(int(order * (1.0 - LAST_DIGITS / bits)), 1), order - 1)
+    nothing_known = np.zeros((2, 0))
     moving = np.empty((2, n))
     at_state(table, q, v, moving, lines)
     found = inverted_pairs(table, lines, space)
@@ -284,7 +298,7 @@ def advance_pairs(
             path[0, size + i], path[1, size + i] = v[i, 0], v[i, 1]
         started(table, products)
         # Where doubles do not invert the matrix, they do not do for any coefficient.
-        coefficients_pairs(table, space, products, paired if found == CORRECTED else order - 1)
+        coefficients_pairs(table, space, products, paired if found == CORRECTED else order - 1, nothing_known)
         c = series[step]
         for i in range(n):
             for k in range(order + 1):

@@ -12,6 +12,9 @@ from core.arrays import Floats, Integers
 _USUAL = 0.1
 """Share of pieces that is shorter than expected: what is left of these is expanded one by one."""
 
+MUCH_LONGER = 4.0
+"""How many times as long as those before pieces are tried at most."""
+
 
 @dataclass(frozen=True)
 class Signs:
@@ -56,7 +59,7 @@ def segments(own: Signs, number: int) -> list[tuple[float, int]]:
 def usual_length(natural: Floats, lengths: Floats) -> float:
     """Return a length that most pieces could have at least, a power of two as theirs are; 0 if corners end them all."""
     # What is a polynomial exactly could be followed for ever.
-    longest = 2.0 * float(lengths.max())
+    longest = MUCH_LONGER * float(lengths.max())
     whole = np.sort(natural[natural >= lengths])
     if not len(whole):
         return 0.0

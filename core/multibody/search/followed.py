@@ -16,7 +16,7 @@ from core.arrays import Floats
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.bernstein import MOST_SEGMENTS, NEGATIVE, POSITIVE, decided_each
 from core.multibody.search.bands import FLOOR, Quantity, later, with_band
-from core.multibody.search.batch import Batch, Signs, usual_length
+from core.multibody.search.batch import MUCH_LONGER, Batch, Signs, usual_length
 from core.multibody.search.pieces import Expanded
 
 MOST_PIECES = 60_000
@@ -228,6 +228,9 @@ class Followed:
             else:
                 one.closely = True
         self._last = batch.usual
+        if batch.usual >= MUCH_LONGER * float(batch.lengths.max()):
+            # Of what becomes smooth, many pieces of the present length would be in vain.
+            self._at_once = 1
         return expanded
 
     def _batch(self, ahead: Sequence[Interval], *, closely: bool) -> Batch:

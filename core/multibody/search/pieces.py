@@ -19,6 +19,7 @@ from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.formulas import names_of
 from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly, coordinate
+from core.multibody.algebra.square_inverse import padded
 from core.multibody.equations.packed import Packed, Units, packed_values, two_to
 from core.multibody.laws.kernel import values_of_laws
 from core.multibody.laws.law import Input, Law
@@ -216,7 +217,12 @@ class ExpandedWhole:
         AccuracyUnreachable
             At a place where the connections lose their rank.
         """
-        return expanded_from(*self.whole.arrays, len(self.whole.measures.table.rows), self._states(times), reach)
+        arrays, units, chosen = self.whole.arrays
+        rows = len(self.whole.measures.table.rows)
+        own = _from_steps(self.whole, self.whole.parts_of(None), self.kind, times, reach)
+        if own is not None:
+            return _with_all_rows(units, chosen, rows, *_with_multipliers(arrays, units, *own))
+        return expanded_from(arrays, units, chosen, rows, self._states(times), reach)
 
     def _states(self, times: Floats) -> tuple[Floats, Floats]:
         if not self.coarse:
@@ -244,6 +250,11 @@ class ExpandedPlaces:
         """Return the pieces; it raises as `ExpandedWhole` does."""
         # What stays follows none.
         parts = self.whole.parts_of(self.of) or self.whole.parts_of(None)
+        own_steps = _from_steps(self.whole, parts, self.kind, times, reach)
+        if own_steps is not None:
+            lengths, places, place_sizes = own_steps
+            nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
+            return Pieces(*lengths, places, place_sizes, nothing, nothing[..., 0])
         arrays, units, where = self.whole.reduced_arrays(parts)
         states = self.whole.reduced_in_doubles if self.coarse else self.whole.reduced_in_pairs
         z, w = states(times, self.kind)
@@ -269,10 +280,16 @@ def expanded_from(
     AccuracyUnreachable
         At a place where the connections lose their rank.
     """
-    lengths, series, sizes = _expanded(arrays, units, states, reach)
+    return _with_all_rows(units, chosen, rows, *_expanded(arrays, units, states, reach))
+
+
+def _with_all_rows(
+    units: Units, chosen: Sequence[int], rows: int, lengths: tuple[Floats, Floats], series: Floats, sizes: Floats
+) -> Pieces:
+    """Return pieces from the series of coordinates and of the multipliers of the chosen ones of some rows."""
     n = len(units.lengths)
-    multipliers = np.zeros((len(reach), rows, COEFFICIENTS, 2))
-    multiplier_sizes = np.zeros((len(reach), rows, COEFFICIENTS))
+    multipliers = np.zeros((len(series), rows, COEFFICIENTS, 2))
+    multiplier_sizes = np.zeros((len(series), rows, COEFFICIENTS))
     factors = np.array([two_to(units.multiplier(row)) for row in chosen])
     multipliers[:, chosen] = series[:, n:, :COEFFICIENTS] * factors[:, None, None]
     multiplier_sizes[:, chosen] = sizes[:, n:, :COEFFICIENTS] * factors[:, None]
@@ -291,10 +308,63 @@ def _expanded(
     # States of another layout would have the kernel compiled once more.
     down = units.down[None, :, None]
     places, rates = np.ascontiguousarray(q * down), np.ascontiguousarray(v * (down * two_to(units.time)))
-    done = expand(arrays, places, rates, reach, units.up, units.time, lengths, steps, series, sizes)
+    nothing = np.zeros((0, 2, 0))
+    done = expand(arrays, places, rates, reach, units.up, units.time, lengths, steps, series, sizes, nothing)
     if done < count:
         raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
     return (lengths, steps), series, sizes
+
+
+def _from_steps(
+    whole: Whole, parts: tuple[int, ...], kind: str, times: Floats, reach: Floats
+) -> tuple[tuple[Floats, Floats], Floats, Floats] | None:
+    """Return lengths of pieces and how long they could be (s), places and their sizes, of all coordinates.
+
+    Those of stiff parts, whose Taylor series hold on far shorter pieces, are the polynomials of their own steps; None
+    where there are no stiff parts.
+    """
+    ways = {k: whole.parts[k][1].steps_about(times, reach, kind, ORDER) for k in parts}
+    stiff = {k: own for k, own in ways.items() if own is not None}
+    if not stiff:
+        return None
+    found = [(list(whole.parts[k][0]), *own) for k, own in stiff.items()]
+    others = tuple(k for k in parts if k not in stiff)
+    if others:
+        arrays, units, where = whole.reduced_arrays(others)
+        z, w = whole.reduced_in_pairs(times, kind)
+        found.append((where, *_expanded(arrays, units, (z[:, where], w[:, where]), reach)))
+    lengths = np.sign(reach) * np.minimum.reduce([np.abs(own[0]) for _, own, _, _ in found])
+    natural = np.minimum.reduce([own[1] for _, own, _, _ in found])
+    where = [i for indices, _, _, _ in found for i in indices]
+    powers = [(lengths / own[0])[:, None, None] ** np.arange(ORDER + 1) for _, own, _, _ in found]
+    series = np.concatenate([x * by[..., None] for (*_, x, _), by in zip(found, powers, strict=True)], axis=1)
+    sizes = np.concatenate([x * by for (*_, x), by in zip(found, powers, strict=True)], axis=1)
+    slopes, offsets = whole.affine
+    places, place_sizes = _spread_series(slopes, offsets, series, sizes, np.array(where, dtype=np.int64))
+    return (lengths, natural), places, place_sizes
+
+
+def _with_multipliers(
+    arrays: Packed, units: Units, lengths: tuple[Floats, Floats], places: Floats, place_sizes: Floats
+) -> tuple[tuple[Floats, Floats], Floats, Floats]:
+    """Return pieces as `_expanded` does, with the multipliers of places that are known."""
+    count, n = places.shape[:2]
+    size, down = padded(n + arrays.rate.shape[0]), units.down[:, None, None]
+    shares = two_to(units.time) / lengths[0]
+    own = places * down * (shares[:, None] ** np.arange(ORDER + 1))[:, None, :, None]
+    path = np.zeros((count, 2, ORDER + 1, size))
+    path[..., :n] = np.transpose(own, (0, 3, 2, 1))
+    q, v = np.ascontiguousarray(own[:, :, 0]), np.ascontiguousarray(own[:, :, 1])
+    series = np.zeros((count, n + arrays.rate.shape[0], ORDER + 1, 2))
+    sizes, formed = np.zeros(series.shape[:-1]), np.zeros(count)
+    known = path.reshape(count, 2, -1)
+    done = expand(arrays, q, v, lengths[0], units.up, units.time, formed, lengths[1].copy(), series, sizes, known)
+    if done < count:
+        raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
+    # Beyond the powers of the places those of the multipliers are rounding.
+    series[:, n:, 1 + int(np.max(np.nonzero(places[..., 0])[2], initial=0)) :] = 0.0
+    series[:, :n], sizes[:, :n] = places, place_sizes
+    return lengths, series, sizes
 
 
 @kernel()

@@ -52,7 +52,7 @@ def _to_corner(
     found = abs(until_corner(table.laws, products.laws, way * within))
     if found < NEAR * within:
         started(table, products)
-        coefficients_pairs(table, space, products, order - 1)
+        coefficients_pairs(table, space, products, order - 1, np.zeros((2, 0)))
         step = _step(table, products, own, group)
         within = min(step, longest)
         found = abs(until_corner(table.laws, products.laws, way * within))
@@ -71,6 +71,7 @@ def expand(
     steps: Floats,
     series: Floats,
     sizes: Floats,
+    known: Floats,
 ) -> int:
     """Fill in the series about some states; return how many were done before one where the connections lose their rank.
 
@@ -85,12 +86,14 @@ def expand(
     lengths : (t,)
         Filled with the lengths of the pieces (s): powers of two, no longer than the least ones that cover the reach.
     steps : (t,)
-        Filled with the times over which the last coefficients are small, or up to a corner of a formula (s).
+        Times over which the last coefficients are small, or up to a corner of a formula (s): filled in unless known.
     series : (t, n + m, order + 1, 2)
         Filled with coefficients of powers of time as a share of the length, those of coordinates in SI units;
         multipliers have two less.
     sizes : (t, n + m, order + 1)
         Filled with the largest coefficient of the same group and power, to which rounding is in proportion.
+    known : (t, 2, orders * s)
+        The paths where they are known otherwise, over given steps, so that multipliers alone are wanted; else of none.
     """
     n, m = table.load.shape[0], table.rate.shape[0]
     order = series.shape[2] - 1
@@ -101,6 +104,7 @@ def expand(
     own = np.empty((n + m if table.laws.gaps > 0 else n, order + 1))
     group = np.full(len(own), FORCES)
     group[:n] = table.group
+    nothing = np.zeros((2, 0))
     way = 1.0 if reach[0] > 0.0 else -1.0
     products.way[0] = way
     for s in range(q.shape[0]):
@@ -111,13 +115,15 @@ def expand(
             path[0, i], path[1, i] = q[s, i, 0], q[s, i, 1]
             path[0, size + i], path[1, size + i] = v[s, i, 0], v[s, i, 1]
         started(table, products)
-        coefficients_pairs(table, space, products, order - 1)
+        coefficients_pairs(table, space, products, order - 1, known[s] if len(known) > 0 else nothing)
         mantissa, exponent = math.frexp(abs(reach[s]))
         exponent -= time + (mantissa == 0.5)
         longest = math.ldexp(1.0, min(exponent, 1000))
-        step = min(_step(table, products, own, group), longest_step(table, products, TOLERANCE))
+        step = math.ldexp(steps[s], -time)
+        if len(known) == 0:
+            step = min(_step(table, products, own, group), longest_step(table, products, TOLERANCE))
         corner = step
-        if table.laws.operations.shape[0] > 0:
+        if table.laws.operations.shape[0] > 0 and len(known) == 0:
             step, corner = _to_corner(table, space, products, own, group, step, longest)
         if not corner > 0.0:
             return s

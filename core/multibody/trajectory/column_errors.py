@@ -12,8 +12,9 @@ from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.search.bands import FLOOR
 from core.systems.trajectory import Column
 
-PLACES_BETWEEN = np.arange(1, 18) * ((5.0**0.5 - 1.0) / 2.0) % 1.0
-"""Shares of a time that are spread evenly and meet none of the fractions of a period."""
+PLACES_BETWEEN = np.append(np.arange(1, 18) * ((5.0**0.5 - 1.0) / 2.0) % 1.0, 0.618 * 0.25 ** np.arange(3, 20))
+"""Shares of a time that are spread evenly and meet none of the fractions of a period, and those near the start, where
+motions are that come to rest soon."""
 ROUNDED = 2.0**-46
 """Share of the largest value that the error of a column has by rounding alone, with that of its sizes."""
 FINEST = 2.0**-50

@@ -240,3 +240,21 @@ def attracted_or_rolling(seed: int) -> dict[str, Any]:
         lambda: stars(random, 4),
     )
     return kinds[seed % len(kinds)]()
+
+
+def stiff_linkage(seed: int) -> dict[str, Any]:
+    """Return a chain of points, some of whose rods are stiff springs with dampers that bring them to rest fast."""
+    random = np.random.default_rng(seed)
+    links = int(random.integers(1, 4))
+    found = pendulum_of_points(random, links)
+    soft = int(random.integers(links))
+    for i, one in enumerate(found["connections"]):
+        if i != soft and random.random() < 0.5:
+            continue
+        stiffness = float(f"{10 ** random.uniform(3, 6):.3g}")
+        # The faster of two real roots of a mass on such a spring and damper.
+        damping = float(f"{2.5 * stiffness**0.5 * random.uniform(1, 4):.3g}")
+        ends = {"a": one["a"], "b": one["b"]}
+        found["connections"][i] = {"kind": "spring", "name": f"s{i}", "stiffness": stiffness, **ends}
+        found["connections"].append({"kind": "damper", "name": f"d{i}", "coefficient": damping, **ends})
+    return found

@@ -13,8 +13,8 @@ from core.balls import precision
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.equations.dynamics import accelerations
-from core.multibody.motion.numerical import Run
 from core.multibody.motion.periods import repeating
+from core.multibody.motion.run import Run
 from core.multibody.motion.vertical_symmetry import precessing
 from core.multibody.solve import solve_scene
 from tests.core.multibody.judge import KINDS, judged, numerical, stated_over_true
@@ -154,7 +154,7 @@ def test_steps_that_a_search_takes_grow_with_its_length() -> None:
 
 
 def test_a_grown_run_has_no_more_steps_than_any(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.multibody.motion.numerical.MOST_STEPS", 40)
+    monkeypatch.setattr("core.multibody.motion.run.MOST_STEPS", 40)
     monkeypatch.setattr("core.multibody.motion.numerical._CHUNK", 2**14)
     (one,) = numerical(points((1, 2), ("0.7", "-1"), (1, 3)))
     ends = iter(np.linspace(0.0, 40.0, 80).tolist())
