@@ -210,6 +210,8 @@ class Equilibrium:
         Of positions and angles.
     shapes : tuple of ModeShape or None
         Of the modes, in their order; None of those whose roots coincide, and of such as no column shows.
+    continuum : bool
+        Whether it is one of a line or surface of places of rest, of which the others are left out.
     """
 
     positions: Mapping[str, tuple[float, ...]]
@@ -219,6 +221,7 @@ class Equilibrium:
     residual: float
     errors: EquilibriumErrors
     shapes: tuple[ModeShape | None, ...] = ()
+    continuum: bool = False
 
 
 @dataclass(frozen=True)

@@ -43,9 +43,23 @@ def has_field(model: Any, *path: str | int) -> bool:
     return bool(nodes)
 
 
-def fields_of(model: Any) -> list[str]:
-    """Return the names of the fields of a question or an answer."""
-    return [name for hint, _ in _bare(model, None) for name in _fields(_origin(hint) or hint)]
+def unknown_name(model: Any, path: Path) -> tuple[int, list[str]] | None:
+    """Return where a path has a name that no document of a model has, and the names that it has there.
+
+    Returns
+    -------
+    (int, list of str) or None
+        The number of the step, and the fields; None for a path that some document may have.
+    """
+    nodes = [*_bare(model, None)]
+    for k, step in enumerate(path):
+        inner = [one for node in nodes for one in _stepped(node, step)]
+        if not inner:
+            fields = [name for hint, _ in nodes for name in _fields(_origin(hint) or hint)]
+            plain = all(_fields(_origin(hint) or hint) or hint is type(None) for hint, _ in nodes)
+            return (k, fields) if fields and plain and isinstance(step, str) else None
+        nodes = inner
+    return None
 
 
 def numbers_within(model: Any, document: Any) -> Iterator[tuple[str, float]]:

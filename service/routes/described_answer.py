@@ -212,6 +212,10 @@ class SceneEquilibrium(View):
     errors: dict[str, dict[str, Annotated[float, Unit("as in the field of that name")]]] = Field(
         description="Bounds of the errors of positions, as the length of a vector, and of angles, by body."
     )
+    continuum: bool = Field(
+        description="Whether it is one of a line or surface of places of rest, along its modes of frequency 0; the "
+        "others that were found of it are left out."
+    )
 
 
 class DescribedAccuracy(View):

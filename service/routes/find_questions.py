@@ -19,7 +19,7 @@ from core.find.varied import LARGEST, Scale, Varied, can_vary
 from core.multibody.language.written_units import number_within
 from core.near_names import did_you_mean
 from core.sensitivities.figure import figure_of
-from service.requests.declared_units import fields_of, unit_at
+from service.requests.declared_units import unit_at, unknown_name
 from service.requests.figures import NamedEvent, WrittenFigure
 from service.routes.assessments.question_table import EndpointRequest
 from service.routing import PostRoute
@@ -168,11 +168,15 @@ def _condition(form: ConditionForm, route: PostRoute, within: Path) -> Condition
     if form.figure is None:
         raise InvalidParameter((*within, "figure"), "be given")
     figure = figure_of(form.figure, (*within, "figure"))
-    known = fields_of(route.answer)
-    if figure.path[0] not in known:
+    unknown = unknown_name(route.answer, figure.path)
+    if unknown is not None:
+        k, known = unknown
         rule = "lead to something that answers to the question may have"
-        near = did_you_mean(pointer_of(figure.path[:1]), [pointer_of((name,)) for name in known])
-        raise InvalidParameter((*within, "figure"), rule, remedy=near or f"these begin with {', '.join(known)}")
+        before = pointer_of(figure.path[:k])
+        near = did_you_mean(pointer_of((figure.path[k],)), [pointer_of((name,)) for name in known])
+        listed = f"{before} has {', '.join(known)}" if before else f"these begin with {', '.join(known)}"
+        remedy = f"{near} {listed}" if near and before else near or listed
+        raise InvalidParameter((*within, "figure"), rule, remedy=remedy)
     of_event = isinstance(form.figure, Mapping) and "event" in form.figure
     equals: Any = form.equals
     if wanted == "equals" and not isinstance(equals, (bool, str)):

@@ -109,6 +109,15 @@ async def test_what_is_wrong_is_refused_in_its_place(
     assert remedy in help_
 
 
+async def test_a_name_behind_an_index_that_no_answer_has_is_refused_before_any_is_computed() -> None:
+    question = STONE | {"request": STONE["request"] | {"outputs": ["equilibria"]}}
+    until = {"figure": "/equilibria/0/stabel", "changes": True}
+    status, where, _, remedy = await refused(question, {"pointer": "/let/h", "between": [0.5, 2.0]}, until)
+    assert (status, where) == (422, "/until/figure")
+    assert 'did you mean "/stable"?' in remedy
+    assert "/equilibria/0 has positions" in remedy
+
+
 async def test_faults_of_the_question_point_into_it() -> None:
     status, where, _, _ = await refused(FLIP | {"path": "/v1/nothing"}, SPIN, EIGHT)
     assert (status, where) == (422, "/question/path")

@@ -36,9 +36,10 @@ class Conserved:
 
 
 def conserved_of_part(found: LagrangeEquations) -> list[Conserved]:
-    """Return what is constant along every motion of a part."""
+    """Return what is constant along every motion of a part that satisfies its rows."""
     kept = []
-    power = added(Sum.variable(name, 1) * one for name, one in found.equations.items())
+    # What holds a row does no work along it; of a row that is driven, or that rubs, some of its power is left.
+    power = added([*(Sum.variable(name, 1) * one for name, one in found.equations.items()), found.multiplier_power])
     momenta = {name: found.kinetic.derivative(Variable(name, 1)) for name in found.equations}
     energy = added(Sum.variable(name, 1) * one for name, one in momenta.items()) - found.kinetic + found.potential
     if energy and not power - energy.rate():

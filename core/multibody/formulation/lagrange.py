@@ -18,6 +18,8 @@ class LagrangeEquations:
     equations : mapping of str to Sum
         By variable: inertia less forces, which is zero.
     kinetic, potential : Sum
+    multiplier_power : Sum
+        What the multipliers give of power along their rows, which is zero of every motion that satisfies these.
     lagrangian : Sum or None
         None where Lagrange's equations of it are not all of the forces.
     """
@@ -25,6 +27,7 @@ class LagrangeEquations:
     equations: Mapping[str, Sum]
     kinetic: Sum
     potential: Sum
+    multiplier_power: Sum
     lagrangian: Sum | None
 
 
@@ -79,7 +82,8 @@ def lagrange_equations(chart: Chart, force_names: Sequence[str], multipliers: Se
     }
     moving, resting = added(kinetic), added(potential)
     lagrangian = None if chart.rows else _lagrangian(moving, resting, equations)
-    return LagrangeEquations(equations, moving, resting, lagrangian)
+    idle = added(chart.rates_of(row) * Sum.variable(name) for row, name in zip(chart.rows, multipliers, strict=True))
+    return LagrangeEquations(equations, moving, resting, idle, lagrangian)
 
 
 def _lagrangian(kinetic: Sum, potential: Sum, equations: Mapping[str, Sum]) -> Sum | None:

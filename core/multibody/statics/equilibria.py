@@ -24,6 +24,7 @@ from core.multibody.equations.dynamics import accelerations
 from core.multibody.equations.packed import exponent, packed, state, two_to, units_of
 from core.multibody.reduction.passes import reduced
 from core.multibody.reduction.reduction import Reduced
+from core.multibody.statics.continua import one_of_each
 from core.multibody.statics.equilibrium_search import MOST_FOUND, solutions_of
 from core.multibody.statics.exact_places import ExactPlace, RestEquations, Tie
 from core.multibody.statics.mode_shapes import mode_shape
@@ -97,7 +98,7 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
     found_places = [place for q, x in places for place in [exact.place(q, x)] if place is not None]
     # Of places that differ by whole turns alone that with the fewest is kept.
     found_places.sort(key=lambda place: sum(abs(float(place.q[j] - table.q[j])) for j in turns))
-    refined = _different(found_places, exact, turns)
+    refined = one_of_each(_different(found_places, exact, turns), exact)
     beside = (
         other
         for place in refined
@@ -105,7 +106,7 @@ def _found(found: Described) -> tuple[Equilibrium, ...]:
         for direction in soft_directions(exact, place)
         for other in places_beside(exact, equations.arrays, place, direction)
     )
-    refined = _different(chain(list(refined), beside), exact, turns)
+    refined = _different(chain(refined, beside), exact, turns)
     answers = [
         (exact.potential(place.q), _described(found, small, exact, place))
         for place in refined
@@ -187,7 +188,8 @@ def _described(found: Described, small: Reduced, equations: RestEquations, place
         None if change is None else mode_shape(frames, small.expressions, place.q, change) for change in changes
     )
     errors = EquilibriumErrors(wrong, turned)
-    return Equilibrium(positions, angles, stable, shown, equations.share_left(place), errors, shapes)
+    left = equations.share_left(place)
+    return Equilibrium(positions, angles, stable, shown, left, errors, shapes, place.continuum)
 
 
 def _length(errors: Sequence[float | None]) -> float:

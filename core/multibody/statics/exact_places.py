@@ -89,11 +89,14 @@ class ExactPlace:
         Coordinates of the table, and multipliers of its rows; those that are left open are exact.
     one_of_many : bool
         Whether unknowns are left open.
+    continuum : bool
+        Whether coordinates are among these, and not forces that others share alone.
     """
 
     q: list[Ball]
     multipliers: list[Ball]
     one_of_many: bool = False
+    continuum: bool = False
 
 
 class RestEquations:
@@ -187,18 +190,21 @@ class RestEquations:
     def refined(self, x: Sequence[Ball]) -> ExactPlace | None:
         """Return the place of rest beside coordinates and multipliers, None where there is none."""
         every = range(len(x))
-        found, one_of_many = self._near(x, every, every), False
+        found, one_of_many, continuum = self._near(x, every, every), False, False
         if found is None:
             unknowns, equations = self._determined(x)
             one_of_many = len(equations) < len(x)
+            continuum = not {*range(self.count)} <= {*unknowns}
             found = self._near(x, unknowns, equations) if one_of_many else None
             if found is not None:
                 left = self.residuals(found)
                 if not all(is_zero(left[i]) for i in set(every) - set(equations)):
                     found = None
         if found is None:
-            found, one_of_many = self._slowly(x), False
-        return None if found is None else ExactPlace(found[: self.count], found[self.count :], one_of_many)
+            found, one_of_many, continuum = self._slowly(x), False, False
+        if found is None:
+            return None
+        return ExactPlace(found[: self.count], found[self.count :], one_of_many, continuum)
 
     def _determined(self, x: Sequence[Ball]) -> tuple[list[int], list[int]]:
         """Return the unknowns that the equations determine there, as doubles tell, and as many equations that do."""

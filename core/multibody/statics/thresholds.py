@@ -69,15 +69,18 @@ class RestOf:
 
 @dataclass(frozen=True)
 class _Varied:
-    """A scene with one number to vary, at `path`; `where` is the place of the question."""
+    """A scene with one number to vary, at `path`; `where` is the place of the question.
+
+    What touches is known by name: a guide is one of the contacts only where it rubs.
+    """
 
     scene: Scene
     path: Path
     where: Path
-    touching: list[int]
+    touching: frozenset[str]
 
-    def at(self, value: Ball) -> Described:
-        """Return the scene with another value of the number."""
+    def at(self, value: Ball) -> tuple[Described, list[int]]:
+        """Return the scene with another value of the number, and which of its contacts touch."""
         numerals = Numerals.of(self.scene.let, self.scene.numbers, instead={self.path: value})
         try:
             base = _base(self.scene, numerals)
@@ -88,17 +91,23 @@ class _Varied:
                 (*self.where, "between"),
                 f"stay where the scene can be; with the value {float(value):.10g} it cannot: {fault.detail}",
             ) from fault
-        if touching != self.touching:
+        if _touching_contacts(base, touching) != self.touching:
             raise NotApplicable(
                 f"with the value {float(value):.10g} other places touch than with the written one",
                 path=(*self.where, "vary"),
                 remedy="write the places as formulas over a name in let, and vary that name",
             )
-        return base
+        return base, touching
 
     def rests(self, value: Ball) -> bool:
         """Return whether the scene stays at rest with another value."""
-        return _rests(self.at(value), self.touching)
+        return _rests(*self.at(value))
+
+
+def _touching_contacts(base: Described, touching: Sequence[int]) -> frozenset[str]:
+    """Return the names of the contacts that touch, guides left out, which hold their places with and without it."""
+    contacts = (base.measures.unilateral[i] for i in touching)
+    return frozenset(contact.name for contact in contacts if contact.opposite is None)
 
 
 def _base(scene: Scene, numerals: Numerals) -> Described:
@@ -166,7 +175,7 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
     unit = unit_at(scene, path)
     if not _rests(base, touching):
         return RestRange(question.vary, unit, value, None, None, _why_not(base, touching), error)
-    varied = _Varied(scene, path, where, touching)
+    varied = _Varied(scene, path, where, _touching_contacts(base, touching))
     lower, upper = _end(varied, written, least), _end(varied, written, most)
     return RestRange(question.vary, unit, value, lower, upper, None, error)
 
@@ -241,9 +250,9 @@ def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
             outside = middle
     value = nearest((inside + outside) / 2)
     error = max(float(abs(x - arb(value)).upper()) for x in (inside, outside))
-    base = varied.at(outside)
+    base, touching = varied.at(outside)
     table, unilateral = base.measures.table, base.measures.unilateral
-    found = decided(table, unilateral, varied.touching, table.q, table.v)
+    found = decided(table, unilateral, touching, table.q, table.v)
     if isinstance(found, Problem):
         return RestEnd(value, error, {}, found.code)
-    return RestEnd(value, error, {unilateral[i].name: found.states[i].value for i in varied.touching}, None)
+    return RestEnd(value, error, {unilateral[i].name: found.states[i].value for i in touching}, None)

@@ -19,17 +19,19 @@ CONSERVED = {
     name: count
     for count, names in {
         0: """
-            backspin-returns ball-in-bowl band-brake bead-on-rough-ring block-on-plank
+            backspin-returns band-brake bead-on-rough-ring block-on-plank
             block-on-plank-in-space block-on-spring-with-friction
-            block-up-rough-incline blocks-pulled centrifugal-governor coin-rolls-round coupled-pendulums
+            block-up-rough-incline blocks-pulled
             crank-slider damped-oscillator disc-slips-down-incline drawer-pulled-aside
             driven-duffing-oscillator fall-with-drag
-            four-bar-linkage four-legged-table kapitza-pendulum lagrange-points plank-on-two-strings
-            rattleback rod-in-cylinder rod-on-edge rope-on-bollard sleeping-top slip-to-roll
-            sphere-on-turntable stone-across-slope three-body-figure-eight
+            four-legged-table kapitza-pendulum
+            rope-on-bollard sleeping-top slip-to-roll
+            sphere-on-turntable stone-across-slope
         """,
         1: """
-            atwood-machine atwood-machine-with-spring ball-in-cylinder ball-on-ball-dropped bead-on-hoop
+            ball-in-bowl centrifugal-governor coin-rolls-round coupled-pendulums four-bar-linkage lagrange-points
+            plank-on-two-strings rattleback rod-in-cylinder rod-on-edge three-body-figure-eight
+            atwood-machine atwood-machine-with-spring ball-on-ball-dropped bead-on-hoop
             bead-on-parabola bead-on-rotating-rod block-and-tackle block-tips-over rocking-block
             blocks-on-incline breaking-string
             bounce-to-rest chain-off-table chain-over-peg cradle-of-two cylinder-in-cylinder
@@ -43,7 +45,7 @@ CONSERVED = {
             weight-lands yo-yo
         """,
         2: """
-            alpha-particle asymmetric-top ball-and-stick
+            alpha-particle asymmetric-top ball-and-stick ball-in-cylinder
             ballistic-pendulum billiard-ball blocks-count-pi conical-pendulum
             cylinder-on-cylinder cylinder-on-movable-wedge foucault-pendulum gyroscope-with-offset-mass
             kepler-ellipse kovalevskaya-top lagrange-top precessing-top sphere-on-incline spherical-pendulum

@@ -95,6 +95,19 @@ def test_cone_of_friction() -> None:
     assert (weight.lower, weight.upper) == (RestEnd(0.001, 0.0, None, None), RestEnd(1000.0, 0.0, None, None))
 
 
+def test_friction_of_a_slider_is_varied_from_none_on() -> None:
+    """A slider without friction is no contact, and rests where it is level."""
+    rail = {"kind": "slider", "name": "rail", "a": "block", "b": [0, 0], "slope": 0.3, "friction": 0.5}
+    scene = {"gravity": [0, -9.81], "bodies": {"block": {"mass": 1, "at": [0, 0]}}, "connections": [rail]}
+    with mpmath.workdps(50):
+        least = mpmath.tan(mpmath.mpf("0.3"))
+    found = ranged(scene, "/connections/0/friction", 0, 1)
+    require(found.lower, least, {"rail.1": "slide back", "rail.2": "open"})
+    assert found.upper == RestEnd(1.0, 0.0, None, None)
+    level = ranged({**scene, "connections": [rail | {"slope": 0}]}, "/connections/0/friction", 0, 1)
+    assert level.lower == RestEnd(0.0, 0.0, None, None)
+
+
 def test_the_steepest_slope_is_the_same_in_degrees() -> None:
     contact = {**INCLINE["connections"][0], "on": {"at": [0, 0], "slope": {"degrees": 10}}}  # type: ignore[index]
     found = ranged({**INCLINE, "connections": [contact]}, "/connections/0/on/slope/degrees", 0, 80)
