@@ -22,7 +22,7 @@ CONSERVED = {
             backspin-returns band-brake bead-on-rough-ring block-on-plank
             block-on-plank-in-space block-on-spring-with-friction
             block-up-rough-incline blocks-pulled
-            crank-slider damped-oscillator disc-slips-down-incline drawer-pulled-aside
+            crank-slider damped-governor damped-oscillator disc-slips-down-incline drawer-pulled-aside
             driven-duffing-oscillator fall-with-drag
             four-legged-table kapitza-pendulum
             rope-on-bollard sleeping-top slip-to-roll
@@ -70,6 +70,7 @@ CLOSED = {
             bead-on-parabola bead-on-rough-ring centrifugal-governor coin-rolls-round conical-pendulum
             coupled-pendulums crank-slider cylinder-on-cylinder double-pendulum double-pendulum-of-points
             drawer-pulled-aside driven-duffing-oscillator elastic-pendulum fall-with-drag foucault-pendulum
+            damped-governor
             four-bar-linkage four-legged-table gyroscope-with-offset-mass inverted-pendulum-on-torsion-spring
             kapitza-pendulum kepler-ellipse kovalevskaya-top lagrange-points lagrange-top loaded-hoop
             pendulum-on-cart plank-on-two-strings precessing-top rattleback rod-in-cylinder rod-on-edge
