@@ -125,7 +125,7 @@ def followed(plans: Plans, numbers: Floats, times: Floats, accuracy: float) -> l
         if found is None or any(0.0 < abs(x) < SMALLEST for x in found[2][::2]):
             continue
         plan, setup, outputs = found
-        key = (id(plan), *(x if isinstance(x, int) else x.tobytes() for x in setup.form))
+        key = (plan.bodies, *(x if isinstance(x, int) else x.tobytes() for x in setup.form))
         group = groups.setdefault(key, _Group(plan, [], [], []))
         group.setups.append(setup)
         group.members.append(k)

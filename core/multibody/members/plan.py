@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -122,6 +123,14 @@ class Plan:
     repeat: Callable[..., tuple[tuple[float, ...], tuple[Any, ...]] | None]
     frames: Mapping[str, Frame]
     setups: dict[tuple[Any, ...], Setup]
+
+    @cached_property
+    def bodies(self) -> tuple[object, ...]:
+        """What of the coordinates columns are made of: members of several plans with the same are followed together."""
+        return tuple(
+            (name, *frame.position, frame.direction, frame.turn, repr(frame.axis), frame.turns)
+            for name, frame in self.frames.items()
+        )
 
 
 class Plans:
