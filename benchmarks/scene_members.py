@@ -137,38 +137,6 @@ def heyoka_alone(tolerance: float) -> Callable[[Angles], Angles]:
     return run
 
 
-def dop853(tolerance: float) -> Callable[[Angles], Angles]:
-    """Return numbalsoda's compiled DOP853, the equations compiled, too."""
-    from numba import carray, cfunc
-    from numbalsoda import dop853 as integrate
-    from numbalsoda import lsoda_sig
-
-    first, second, gravity, half = INERTIA + 1.25, INERTIA + 0.25, G, HALF
-
-    @cfunc(lsoda_sig)  # type: ignore[untyped-decorator]
-    def rates(t: float, state: Any, change: Any, data: Any) -> None:
-        y, out = carray(state, (4,)), carray(change, (4,))
-        c, s = half * np.cos(y[0] - y[1]), half * np.sin(y[0] - y[1])
-        one = -s * y[3] * y[3] - 1.5 * gravity * np.cos(y[0])
-        two = s * y[2] * y[2] - half * gravity * np.cos(y[1])
-        det = first * second - c * c
-        out[0], out[1] = y[2], y[3]
-        out[2], out[3] = (second * one - c * two) / det, (first * two - c * one) / det
-
-    pointer, times = rates.address, np.array([0.0, END])
-
-    def run(angles: Angles) -> Angles:
-        found = np.empty(angles.shape)
-        for k, own in enumerate(angles):
-            solution, _ = integrate(
-                pointer, np.array([*own, 0.0, 0.0]), times, rtol=tolerance, atol=tolerance, mxstep=10**6
-            )
-            found[k] = solution[-1, :2]
-        return found
-
-    return run
-
-
 def mujoco_rollout(step: float) -> Callable[[Angles], Angles]:
     """Return MuJoCo's rollout, Runge and Kutta's method of order 4."""
     import mujoco
@@ -220,7 +188,6 @@ ENTRANTS: dict[str, tuple[str, Callable[[float], Callable[[Angles], Any]], tuple
     "Polhode, each alone": ("numpy", alone, (1e-6, 1e-9), ALONE),
     "heyoka, batch mode": ("heyoka", heyoka_batch, (1e-9, 1e-15), None),
     "heyoka, one after another": ("heyoka", heyoka_alone, (1e-9, 1e-15), None),
-    "numbalsoda DOP853": ("numbalsoda", dop853, (1e-9, 1e-13), None),
     "MuJoCo rollout, RK4": ("mujoco", mujoco_rollout, (1e-2, 1e-3), 128),
 }
 
@@ -264,7 +231,7 @@ def main(members: int = MEMBERS) -> None:
                 row["statements below the error"] = int((errors[known] > stated[:judged][known]).sum())
             rows.append(row)
             print(json.dumps(row), flush=True)
-    packages = [name for name in ("numpy", "numba", "heyoka", "mujoco", "numbalsoda") if find_spec(name)]
+    packages = [name for name in ("numpy", "numba", "heyoka", "mujoco") if find_spec(name)]
     document = {"machine": described(*packages), "load_average": {"before": before, "after": os.getloadavg()}}
     text = json.dumps(document | {"seconds": END, "entrants": rows}, indent=2) + "\n"
     (RESULTS / "scene_members.json").write_text(text, encoding="utf-8")
