@@ -208,8 +208,11 @@ def _setup_of(model: Modelled, numerals: Numerals, record: Record) -> Setup:
     if type(motion) is not Numerical or motion.lost_to_doubles or len(motion.rows):
         raise NotRecorded("a motion of another model")
     arrays, table = motion.arrays, motion.table
-    if table.acting or "s" in table.units or not arrays.binds.all():
+    if table.acting or "s" in table.units or not arrays.binds.all() or len(arrays.slides.at):
         raise NotRecorded("forces by formulas, or friction")
+    if len(arrays.damp):
+        # What decays may be stiff, of which each member decides by itself.
+        raise NotRecorded("a motion that may decay")
     if len(arrays.load) + len(arrays.rate) > MOST_COORDINATES:
         raise NotRecorded("a large table")
     if list(whole.parts[0][0]) != list(range(len(table.names))):

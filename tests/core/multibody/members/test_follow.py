@@ -9,7 +9,7 @@ import pytest
 
 from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
-from tests.core.multibody.members.scenes import Places, damped_pendulum, double_pendulum, many, with_numbers
+from tests.core.multibody.members.scenes import Places, double_pendulum, many, sprung_pendulum, with_numbers
 
 ANGLES: Places = (("let", "a"), ("let", "b"))
 CASES: dict[str, tuple[Any, Places, Any, float, float]] = {
@@ -22,8 +22,8 @@ CASES: dict[str, tuple[Any, Places, Any, float, float]] = {
         1.5,
         1e-9,
     ),
-    "damped": (
-        damped_pendulum(),
+    "spring": (
+        sprung_pendulum(),
         (("connections", 2, "stiffness"), ("bodies", "two", "angular_velocity")),
         [[3.0, -0.5], [20.0, 0.7], [0.3, 2.0]],
         2.0,
@@ -54,11 +54,14 @@ def test_a_member_has_the_bits_of_its_answer_by_itself(name: str) -> None:
 
 
 def test_what_has_no_place_in_lanes_is_left_out() -> None:
-    """A closed form, a member whose places contradict its connections, and one that cannot be."""
+    """A closed form, what decays, a member whose places contradict its connections, and one that cannot be."""
     pendulum = double_pendulum()
     del pendulum["bodies"]["two"], pendulum["connections"][1]
     times = np.array([1.0])
     assert not list(many(pendulum, ANGLES[:1]).answered(np.array([[0.5], [1.0]]), times, 1e-9))
+    damped = double_pendulum()
+    damped["connections"].append({"kind": "damper", "a": "two", "b": "one", "measure": "turn", "coefficient": 0.2})
+    assert not list(many(damped, ANGLES).answered(np.array([[0.5, 1.0]]), times, 1e-9))
     moved = many(double_pendulum(), (("bodies", "one", "places", "top", 0), ("bodies", "one", "mass")))
     numbers = np.array([[-0.5, 1.0], [-0.4, 1.0], [-0.5, -1.0], [-0.5, 1e301], [-0.5, 2.0]])
     assert sorted(k for some in moved.answered(numbers, times, 1e-9) for k in some.members.tolist()) == [0, 4]
