@@ -239,16 +239,16 @@ def _of_group(group: _Group, numbers: Floats, times: Floats, accuracy: float) ->
 
 def _tables(group: _Group, numbers: Floats, times: Floats) -> _Tables:
     """Return the tables of the members of a group."""
-    outputs = np.array(group.outputs)
-    rows, slopes, offsets, starts, written = _filled(group, outputs)
+    count = len(group.members)
+    rows, slopes, offsets, starts, written = _filled(group)
     ups = np.array([setup.units.up for setup in group.setups])
     clock = np.array([two_to(setup.units.time) for setup in group.setups])
     last = float(times.max())
     windows = windows_of(numbers, clock, last)
     asked = np.concatenate([times, last * PLACES_BETWEEN])
-    every = np.concatenate([np.tile(asked, (len(outputs), 1)), windows.times], axis=1)
+    every = np.concatenate([np.tile(asked, (count, 1)), windows.times], axis=1)
     directions = _directions(group.plan.frames)
-    seen = np.zeros((len(outputs), len(directions), 2, slopes.shape[2] + 1))
+    seen = np.zeros((count, len(directions), 2, slopes.shape[2] + 1))
     for d, direction in enumerate(directions):
         own = np.concatenate([slopes[..., 0] * ups[:, None], offsets[..., :1]], axis=2)[:, list(direction)]
         c, s = starts[:, d, 0, 0, None], starts[:, d, 1, 0, None]
@@ -263,14 +263,16 @@ def _directions(frames: Mapping[str, Frame]) -> list[tuple[int, int]]:
     return [one.direction for one in frames.values() if one.turn is None and one.direction is not None]
 
 
-def _filled(group: _Group, outputs: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+def _filled(group: _Group) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """Return the numbers of the tables of all members, their slopes and offsets, and the starts of directions."""
     names = ("numbers", "slopes", "offsets", "starts", "written")
-    found = [np.empty((len(outputs), *getattr(group.setups[0], name).values.shape)) for name in names]
+    found = [np.empty((len(group.members), *getattr(group.setups[0], name).values.shape)) for name in names]
     for setup in {id(one): one for one in group.setups}.values():
         own = np.array([one is setup for one in group.setups])
+        # Those of other plans have other outputs.
+        outputs = np.array([group.outputs[k] for k in np.flatnonzero(own).tolist()])
         for array, name in zip(found, names, strict=True):
-            array[own] = getattr(setup, name).filled(outputs[own])
+            array[own] = getattr(setup, name).filled(outputs)
     return found[0], found[1], found[2], found[3], found[4]
 
 
