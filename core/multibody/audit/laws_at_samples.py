@@ -224,7 +224,7 @@ class _Connection:
             self._hold(f"{force} of nothing that touches", push, 0.0, value, forces=(force,), rows=idle)
         touch = self.connection.coefficients
         if touch is not None and touch.friction and all(name in self.samples.forces for name in touch.friction):
-            given = given & ~np.isnan(self.samples.forces[touch.friction[0]])
+            given = given & ~np.any([np.isnan(self.samples.forces[name]) for name in touch.friction], axis=0)
             self._check_friction(force, touch, state, given)
 
     def _check_friction(self, force: str, touch: Touch, state: Numbers | None, given: Numbers) -> None:
