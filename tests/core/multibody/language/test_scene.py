@@ -68,7 +68,7 @@ FAULTS: list[tuple[Any, tuple[str | int, ...]]] = [
     (joined(kind="contact", measure="turn", a="p", at_most=1), ("connections", 0, "a")),
     (joined(kind="contact", measure="turn", at_most=1), ("connections", 0, "a")),
     (joined(kind="contact", measure="gap", at_most=1, place="p", on={"at": [0, -2]}), ("connections", 0, "at_most")),
-    (joined(kind="impulse"), ("connections", 0, "kind")),
+    (joined(kind="shove"), ("connections", 0, "kind")),
     (joined(kind="rod", a="p"), ("connections", 0, "b")),
     (joined(kind="rod", a="p", b=[0, 0], friction=0.1), ("connections", 0, "friction")),
     (joined(kind="rod", a="p", b=[0, 0], name=5), ("connections", 0, "name")),
