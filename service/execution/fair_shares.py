@@ -62,7 +62,7 @@ class FairShares(Generic[T]):
         return len(self._charged) >= MOST
 
     def may_have_another(self, client: Hashable) -> bool:
-        """Return whether there is room for another one of a client, half of which is kept for clients with none."""
+        """Return whether a client may begin another one: always its first, more in half of the room."""
         own = sum(entry.client == client for entry in self._charged)
         return own == 0 or (own < MOST_OF_A_CLIENT and len(self._charged) < MOST // 2)
 

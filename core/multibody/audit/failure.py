@@ -63,7 +63,7 @@ class Verdict:
     failure : Failure or None
         The worst law that it does not keep; None where it keeps all that are checked.
     compared : bool
-        Whether anything was: powers of very large and very small numbers are no doubles.
+        False where the numbers of a scene or motion have powers that are no doubles, so that nothing could be.
     """
 
     failure: Failure | None = None

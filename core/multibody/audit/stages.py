@@ -110,6 +110,7 @@ def _of_stage(answer: SceneSolution, begin: float, end: float) -> SceneSolution:
     events = tuple(event for event in answer.events if event.time < end and (event.time > begin or begin == 0.0))
     found = replace(answer, phases=phases, events=events)
     if begin == 0.0:
+        # What can act begins and ends, and with it what counts as potential energy.
         searched = "energy.potential"
         return replace(
             found,

@@ -35,8 +35,8 @@ from core.multibody.table.description import Described
 from core.multibody.trajectory.events import follows, runs_of
 
 _TOO_SHORT = 2.0**-44
-"""Share of the time until a slip ends before which no other event is looked for: pieces beside the end are shorter than
-doubles tell times apart, and what happens there is decided anew at the end."""
+"""Share of the time until a slip ends: so short before that end no other event is looked for, as pieces there are
+shorter than doubles tell times apart, and what happens is decided anew at the end."""
 _TURNED = 2.0**20
 """How much longer than what is not known of the end of a slip the time before it is in which its direction is not known
 to a millionth, so that forces have no sign."""

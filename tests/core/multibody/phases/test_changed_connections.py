@@ -14,7 +14,6 @@ import pytest
 
 from core.errors import InvalidParameter, NotApplicable, SelfCheckFailed
 from core.multibody.answer import SceneSolution
-from core.multibody.audit.blows import BlowDefinition
 from core.multibody.language.reading import scene_from
 from core.multibody.phases import changed_connections
 from core.multibody.solve import solve_scene
@@ -349,7 +348,7 @@ def test_what_cannot_be_is_refused(connection: dict[str, Any], path: tuple[str, 
     assert refused.value.path == ("connections", 0, *path)
 
 
-def test_methods_and_equilibria_are_not_answered_where_connections_change() -> None:
+def test_equilibria_are_not_answered_where_connections_change() -> None:
     scene = scene_from({**BOB, "connections": [{"kind": "rod", "a": "bob", "b": [0, 0], "until": 1}]})
     with pytest.raises(NotApplicable):
         solve_scene(scene, np.array([1.0]), ("equilibria",))
@@ -368,8 +367,3 @@ def test_the_audit_refuses_a_blow_that_is_not_given_whole(monkeypatch: pytest.Mo
     connections = [{"kind": "impulse", "name": "kick", "place": "bob", "impulse": [0, 3], "at": 0.5}]
     with pytest.raises(SelfCheckFailed, match="momentum at an impact"):
         solved([1.0], connections=connections, **BOB)
-
-
-def test_a_blow_has_no_force_between_blows() -> None:
-    definition = BlowDefinition("kick", ("bob",), None, turns=True)  # type: ignore[arg-type]
-    assert definition.strikes
