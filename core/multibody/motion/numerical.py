@@ -231,8 +231,12 @@ class Numerical(Motion):
         self, times: Floats, reach: Floats, kind: str, order: int
     ) -> tuple[tuple[Floats, Floats], Floats, Floats] | None:
         """Return the polynomials of its own steps about times, where the motion is stiff."""
-        run = self.run(kind, float(np.max(times + reach)) * two_to(-self.units.time)) if reach[0] > 0.0 else None
-        if run is None or not self.stiff:
+        end = float(np.max(times + reach)) * two_to(-self.units.time)
+        # A search may reach far beyond the first event: a motion that is not stiff is not followed for it.
+        if reach[0] <= 0.0 or not (self.stiff or limiting_decay(self._rates_at_start, end)):
+            return None
+        run = self.run(kind, end)
+        if not self.stiff:
             return None
         return pieces_of_steps(run, self.arrays.group, self.units, times, reach, order)
 

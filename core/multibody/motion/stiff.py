@@ -84,7 +84,7 @@ def limiting_decay(rates: Floats | None, time: float, steps: float | None = None
     decays = np.maximum(-rates[:, 0], 0.0)
     powers = float(np.max(decays, initial=0.0)) * time
     steps = powers / LONGEST if steps is None else steps
-    if powers < LIMITING * steps:
+    if powers <= LIMITING * steps:
         return None
     # What grows or persists is followed for the whole time, what decays until nothing is left of it.
     lasting = np.minimum(time, DECAYED / np.maximum(decays, DECAYED / time))

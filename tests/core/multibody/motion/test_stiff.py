@@ -7,6 +7,7 @@ import pytest
 
 from core.balls import precision
 from core.multibody.algebra.polynomials import BITS
+from core.multibody.motion.stiff import limiting_decay
 from core.multibody.solve import solve_scene
 from tests.core.multibody.judge import judged, numerical
 from tests.core.multibody.random_scenes import stiff_linkage
@@ -56,3 +57,8 @@ def test_a_stiff_governor_settles_in_its_equilibrium() -> None:
     height = column(answer, "sleeve.position").values[:, 1]
     # In equilibrium (M + m) g + k (y + 0.8) = 4 m W^2 y / 4, the balls at half the height of the sleeve.
     assert abs(3 * 9.81 + 8e5 * (height[2] + 0.8) - (-50.0 * height[2])) < 1e-4
+
+
+def test_what_takes_no_time_is_not_stiff() -> None:
+    assert limiting_decay(np.array([[-1e6, 0.0]]), 0.0, 0.0) is None
+    assert limiting_decay(np.array([[0.0, 1.0]]), 1.0, 0.0) is None
