@@ -75,11 +75,11 @@ def _extents(table: Table) -> list[Ball]:
 def _newton(table: Table, paths: Mapping[str, Path]) -> None:
     # What follows from others keeps its tie to them to first order, and has its own value after every step.
     rows = [*(row for row in table.rows if row.measure is not None), *(one.row for one in table.follows)]
-    extents = _extents(table)
+    extents, fixed = _extents(table), {*table.timed, *table.clocks}
     terms = [size(row.measure or {}, extents) for row in rows]
     for _ in range(_NEWTON_STEPS_OF_POSITIONS):
         table.q = [q.mid() for q in table.q]
-        lines = [{j: x for j, x in row.line(table.q).items() if j not in table.timed} for row in rows]
+        lines = [{j: x for j, x in row.line(table.q).items() if j not in fixed} for row in rows]
         residuals = [evaluated(row.measure or {}, table.q) for row in rows]
         # Lines are known as well as the measures are met: rows that are redundant there differ by that much here.
         missed = max((float(abs(x) / y) for x, y in zip(residuals, terms, strict=True) if y > 0), default=0.0)

@@ -60,12 +60,13 @@ def changed(base: Described, acting: Acting, due: Sequence[Entry], tracks: Track
     begin, end, blows = (
         frozenset(entry.name for entry in due if entry.what == what) for what in ("begin", "end", "impulse")
     )
-    fresh = [_acting(acting, begin, end, track) for track in tracks.each]
+    before = [_placed(base, track) for track in tracks.each] if begin else tracks.each
+    fresh = [_acting(acting, begin, end, track) for track in before]
     bases = [
         described(base.scene, base.measures.numerals, one_sided=True, acting=one) if begin or end else base
         for one in fresh
     ]
-    tables = [_begun(own, track, begin, base.paths) for own, track in zip(bases, tracks.each, strict=True)]
+    tables = [_begun(own, track, begin, base.paths) for own, track in zip(bases, before, strict=True)]
     if not tracks.exact:
         # What is held from here on is taken from the first track, and not known better than that.
         q, v = tracks.wide()
@@ -85,6 +86,18 @@ def _acting(acting: Acting, begin: frozenset[str], end: frozenset[str], track: T
     """Return what acts from now on, with the coordinates at which it begins."""
     found = {name: state for name, state in acting.items() if name not in end}
     return found | {name: list(track.q) for name in begin}
+
+
+def _placed(base: Described, track: Track) -> Track:
+    """Return a track with places that meet what has held until now.
+
+    What begins takes its directions from these: axes of a body that are at right angles but for the rounding of a
+    motion would be held at an angle that the body does not allow.
+    """
+    table = replace(base.measures.table, q=list(track.q))
+    table.follow_time()
+    assemble_places(table, base.paths)
+    return replace(track, q=table.q)
 
 
 def _begun(base: Described, track: Track, begin: frozenset[str], paths: Mapping[str, object]) -> Table:

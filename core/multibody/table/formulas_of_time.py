@@ -8,6 +8,8 @@ rate. What drives is then a row as any other: its force, its work and its motion
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from operator import mul, truediv
 
 from core.errors import InvalidParameter, Path
 from core.formulas import Node, value_of
@@ -121,7 +123,7 @@ class FormulaRows:
                 return self._power(first, last)
             case "sqrt":
                 self._require_positive(first)
-                root = self._coordinate(self._value(first).sqrt(), first)
+                root = self._coordinate(_square_root, first)
                 self._hold(difference(product(root, root), first))
                 return root
             case "sin" | "cos" | "tan":
@@ -150,7 +152,8 @@ class FormulaRows:
         if self.measures.sketch and not self._is_timed(argument):
             rule = "have no functions of places or angles other than square roots"
             raise InvalidParameter(self.path, rule, remedy="give the places exactly")
-        return [self._coordinate(value, argument) for value in values(self._value(argument))]
+        count = len(values(self._value(argument)))
+        return [self._coordinate(partial(_component, values, i), argument) for i in range(count)]
 
     def _tie(self, found: Sequence[Poly], values: Callable[[Ball], Sequence[Ball]], argument: Poly) -> None:
         """Let the assembly of the start know of what coordinates the last row makes functions."""
@@ -179,12 +182,13 @@ class FormulaRows:
     def _value(self, poly: Poly) -> Ball:
         return evaluated(poly, self.table.q)
 
-    def _coordinate(self, value: Ball, *of: Poly) -> Poly:
-        """Return a coordinate whose value follows from polynomials."""
+    def _coordinate(self, function: Callable[..., Ball], *of: Poly) -> Poly:
+        """Return a coordinate that is a function of polynomials."""
+        value = partial(_value_of, function, of)
         count = sum(name.startswith(f"{self.name}.formula") for name in self.table.names)
-        index = self.table.coordinate(f"{self.name}.formula{count + 1}", "1", value)
+        index = self.table.coordinate(f"{self.name}.formula{count + 1}", "1", value(self.table.q))
         if all(self._is_timed(poly) for poly in of):
-            self.table.timed.add(index)
+            self.table.timed[index] = value
         return coordinate(index)
 
     def _is_timed(self, poly: Poly) -> bool:
@@ -208,7 +212,7 @@ class FormulaRows:
         for one, other in ((first, last), (last, first)):
             if degree(one) <= 0:
                 return combined((_constant(one), other))
-        found = self._coordinate(self._value(first) * self._value(last), first, last)
+        found = self._coordinate(mul, first, last)
         self._hold(difference(found, product(first, last)))
         self._note_twins([found], first, last)
         return found
@@ -216,7 +220,7 @@ class FormulaRows:
     def _quotient(self, first: Poly, last: Poly) -> Poly:
         if degree(last) <= 0:
             return combined((1 / _constant(last), first))
-        found = self._coordinate(self._value(first) / self._value(last), first, last)
+        found = self._coordinate(truediv, first, last)
         self._hold(difference(product(found, last), first))
         return found
 
@@ -262,6 +266,18 @@ class FormulaRows:
         self._roll((slope, found), (constant(-ONE), argument))
         self._tie([found], values, argument)
         return found
+
+
+def _value_of(function: Callable[..., Ball], of: Sequence[Poly], q: Sequence[Ball]) -> Ball:
+    return function(*(evaluated(poly, q) for poly in of))
+
+
+def _component(values: Callable[[Ball], Sequence[Ball]], i: int, x: Ball) -> Ball:
+    return values(x)[i]
+
+
+def _square_root(x: Ball) -> Ball:
+    return x.sqrt()
 
 
 def _sine_and_cosine(x: Ball) -> Sequence[Ball]:

@@ -150,8 +150,9 @@ class Table:
         Formulas whose values push coordinates.
     q, v : list of balls
         Coordinates and rates at the start.
-    timed : set of int
-        Coordinates of which the time alone decides, so that no assembly of the start moves them.
+    timed : dict of int to callable
+        Coordinates of which the time alone decides, so that no assembly moves them; each with the
+        function that it is of coordinates before it.
     follows : list of Following
         Coordinates that are functions of others, each of those before it.
     twins : list of (int, int)
@@ -171,7 +172,7 @@ class Table:
     laws: list[Law] = field(default_factory=list)
     q: list[Ball] = field(default_factory=list)
     v: list[Ball] = field(default_factory=list)
-    timed: set[int] = field(default_factory=set)
+    timed: dict[int, Callable[[Sequence[Ball]], Ball]] = field(default_factory=dict)
     follows: list[Following] = field(default_factory=list)
     twins: list[tuple[int, int]] = field(default_factory=list)
     places: list[Sequence[Ball]] = field(default_factory=list)
@@ -187,6 +188,11 @@ class Table:
         self.q.append(value)
         self.v.append(ZERO)
         return len(self.names) - 1
+
+    def follow_time(self) -> None:
+        """Give coordinates of which the time alone decides the values of its present one."""
+        for i, value in self.timed.items():
+            self.q[i] = value(self.q)
 
     def add_mass(self, i: int, j: int, value: Ball) -> None:
         """Add to M, on both sides of its diagonal."""
@@ -207,6 +213,11 @@ class Table:
     def add_gyration(self, i: int, j: int, k: int, value: Ball) -> None:
         """Add to one entry of B."""
         add_term(self.gyration, (i, j, k), value)
+
+    @property
+    def clocks(self) -> list[int]:
+        """The coordinates that are a time."""
+        return [i for i, unit in enumerate(self.units) if unit == "s"]
 
     @property
     def acting(self) -> list[Law]:

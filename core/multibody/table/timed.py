@@ -101,7 +101,7 @@ def _silence(measures: Measures, name: str, spans: Mapping[str, range]) -> None:
     del table.laws[spans["laws"].start :]
     for part in ("limits", "kept", "level_rims"):
         del getattr(measures, part)[spans[part].start :]
-    timed = table.timed | {i for i, unit in enumerate(table.units) if unit == "s"}
+    timed = {*table.timed, *table.clocks}
     table.rows[spans["rows"].start :] = [row for row in _own(table.rows, spans["rows"]) if row.coordinates() <= timed]
     table.rows.extend(Row(name, None, {i: constant(ONE)}) for i in spans["names"] if i not in timed)
     table.follows[spans["follows"].start :] = [
