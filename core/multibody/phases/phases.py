@@ -176,7 +176,8 @@ class _Run:
             if not self.motion.phases:
                 raise
             names = tuple(entry.name for entry in due)
-            explanation = f"{', '.join(names)} cannot begin here: a number would have to {fault.rule}"
+            what = "/".join(map(str, fault.path)) or "the places"
+            explanation = f"{', '.join(names)} cannot begin here: {what} would have to {fault.rule}"
             decided_by = "places at which it can begin, or another occasion"
             self._stop(Problem("cannot-begin", explanation, names, decided_by=decided_by))
             return True

@@ -102,7 +102,7 @@ def on_curve_by_formulas(measures: Measures, name: str, connection: GuideCurve, 
     found = _parameter(at, place, guesses, sketch=measures.loose)
     if found is None:
         remedy = "move the body, or give a parameter near it as start"
-        raise PlacesDisagree(where, "pass through the place at the start, in a direction", remedy=remedy)
+        raise PlacesDisagree(where, f"pass through the place {measures.moment}, in a direction", remedy=remedy)
     own = {PARAMETER: coordinate(measures.table.coordinate(f"{name}.parameter", "1", found))}
     for i, (axis, component, formula) in enumerate(zip(COMPONENTS, p.at, formulas, strict=False)):
         along = _rows(measures, name, formula, own, (*where, i))

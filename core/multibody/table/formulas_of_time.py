@@ -67,7 +67,7 @@ def of_time(measures: Measures, name: str, value: object, path: Path) -> Poly | 
     found = FormulaRows(measures, name, path, {TIME: coordinate(clock(measures))}).of(formula.root)
     if not all(measures.table.q[i].is_finite() for key in found for i in key):
         raise InvalidParameter(
-            path, "have a value at the start: it divides by zero, or leaves the domain of a function"
+            path, f"have a value {measures.moment}: it divides by zero, or leaves the domain of a function"
         )
     return found
 
@@ -177,7 +177,8 @@ class FormulaRows:
     def _require_positive(self, poly: Poly) -> None:
         """Refuse roots and powers that have no rate at the start."""
         if not self._value(poly) > 0:
-            raise InvalidParameter(self.path, "have a rate at the start: the root or power of a positive number")
+            rule = f"have a rate {self.measures.moment}: the root or power of a positive number"
+            raise InvalidParameter(self.path, rule)
 
     def _value(self, poly: Poly) -> Ball:
         return evaluated(poly, self.table.q)

@@ -88,7 +88,7 @@ def slider(connection: Slider, measures: Measures, name: str, path: Path) -> Non
     apart = difference(away, driven(measures, name, connection.drive, where))
     now = evaluated(away, measures.table.q)
     if not (measures.loose or abs(evaluated(apart, measures.table.q)) < CLOSE * (ONE + abs(now))):
-        rule = f"be {as_text(now, 10)} m at the start, as the places are apart along the line"
+        rule = f"be {as_text(now, 10)} m {measures.moment}, as the places are apart along the line"
         raise PlacesDisagree(where, rule, remedy="change it, or move the bodies")
     measures.force(f"{name}.drive", [(measures.hold(name, apart), constant(ONE))])
 

@@ -127,7 +127,7 @@ def motor(connection: Motor, measures: Measures, name: str, path: Path) -> None:
         apart = evaluated(difference(turn, drive), measures.table.q)
         if not (measures.loose or abs(apart) < CLOSE):
             now = as_text(evaluated(turn, measures.table.q), 10)
-            rule = f"be {now} rad at the start, as the bodies are turned"
+            rule = f"be {now} rad {measures.moment}, as the bodies are turned"
             raise PlacesDisagree((*path, "drive"), rule, remedy="change it, or turn the bodies")
         row = measures.hold(name, difference(turn, drive))
     else:

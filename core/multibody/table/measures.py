@@ -33,6 +33,9 @@ from core.multibody.table.table import Row
 
 COMPONENTS = ("x", "y", "z")
 
+AT_START, AT_BEGINNING = "at the start", "when it begins"
+"""The moments at which a connection takes from the places what it holds, as faults say them."""
+
 CLOSE = 1e-6
 """Relative mismatch of positions up to which rounded figures are taken to be meant as the connections say."""
 
@@ -53,6 +56,8 @@ class Measures:
         self.one_sided, self.sketch = one_sided, sketch
         # Whether the connection that is added does not act at this time.
         self.waiting = False
+        # When that connection takes from the places what it holds, as faults say it.
+        self.moment = AT_START
         # What begins and ends, and blows, by their connections.
         self.timed: dict[str, Timed] = {}
         self.blows: dict[str, Push] = {}
@@ -133,7 +138,7 @@ class Measures:
         if not self.loose and not abs(now - size * size) < CLOSE * (now + size * size):
             raise PlacesDisagree(
                 where,
-                f"be {float(now.sqrt()):.10g} m, as the places are apart at the start",
+                f"be {float(now.sqrt()):.10g} m, as the places are apart {self.moment}",
                 remedy="leave it out, or move the bodies",
             )
         half = ONE / 2

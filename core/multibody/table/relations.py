@@ -29,7 +29,7 @@ def relation(connection: Relation, measures: Measures, name: str, path: Path) ->
     apart = difference(of, equals)
     missed, q = evaluated(apart, measures.table.q), measures.table.q
     if not (measures.loose or abs(missed) < CLOSE * (ONE + change_by(apart, q, sizes(measures.table, q)))):
-        rule = f"be {as_text(evaluated(of, q), 10)}, as the formula is at the start"
+        rule = f"be {as_text(evaluated(of, q), 10)}, as the formula is {measures.moment}"
         raise PlacesDisagree((*path, "equals"), rule, remedy="change it, or move the bodies")
     row = measures.hold(name, apart)
     measures.force(

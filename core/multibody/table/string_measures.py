@@ -106,7 +106,7 @@ def require_long_enough(measures: Measures, way: Ball, length: Ball, path: Path,
     """Raise `PlacesDisagree` where a string is shorter than its way at the start."""
     if not measures.loose and way - length > CLOSE * length:
         raise PlacesDisagree(
-            (*path, field), f"be at least {float(way):.10g} m, the way it goes at the start", remedy="leave it out"
+            (*path, field), f"be at least {float(way):.10g} m, the way it goes {measures.moment}", remedy="leave it out"
         )
 
 

@@ -93,7 +93,7 @@ def _driven_length(measures: Measures, part: str, way: Ball, connection: String,
     span = driven(measures, part, connection.drive, where)
     now = evaluated(span, measures.table.q)
     if not now > 0:
-        raise InvalidParameter(where, "be greater than 0 m at the start")
+        raise InvalidParameter(where, f"be greater than 0 m {measures.moment}")
     if measures.one_sided:
         require_long_enough(measures, way, now, path, "drive")
         # A coordinate of its own, whose row has the power of what drives it while the string is taut.

@@ -17,7 +17,7 @@ from core.multibody.language.connection import Connection
 from core.multibody.language.motion_formulas import TIME
 from core.multibody.language.written import Number
 from core.multibody.table.connection_effects import Force, Timed, WorkTerm
-from core.multibody.table.measures import Measures
+from core.multibody.table.measures import AT_BEGINNING, AT_START, Measures
 from core.multibody.table.moving_places import driven_works
 from core.multibody.table.rows import add_rows
 from core.multibody.table.table import Row
@@ -54,11 +54,12 @@ def add_timed(
     before = list(table.q)
     if begun is not None:
         table.q[:] = begun[: len(before)]
+        measures.moment = AT_BEGINNING
     measures.waiting = not acts
     try:
         add_rows(connection, measures, name, path)
     finally:
-        measures.waiting = False
+        measures.waiting, measures.moment = False, AT_START
         table.q[: len(before)] = before
         measures.restore_shared(lengths, inverses)
     measures.works.extend(list(driven_works(measures, name, counts["rows"])))

@@ -11,6 +11,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from core.errors import InvalidParameter, NotApplicable, SelfCheckFailed
 from core.multibody.answer import SceneSolution
@@ -314,6 +315,72 @@ def test_a_connection_that_cannot_begin_ends_the_motion() -> None:
     assert found.problem.code == "cannot-begin"
     assert found.problem.time == pytest.approx(0.1)
     assert len(column(found, "ball.position")) == 1
+
+
+def spun(moments: np.ndarray, turned: np.ndarray, rate: np.ndarray, time: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the attitude and the angular velocity in space of a free body, by Euler's equations (DOP853)."""
+
+    def change(_: float, y: np.ndarray) -> np.ndarray:
+        matrix, omega = y[:9].reshape(3, 3), y[9:]
+        return np.concatenate(
+            [np.cross(omega, matrix).ravel(), np.linalg.solve(moments, np.cross(moments @ omega, omega))]
+        )
+
+    end = solve_ivp(
+        change, (0, time), np.concatenate([turned.ravel(), rate]), method="DOP853", rtol=1e-12, atol=1e-13
+    ).y[:, -1]
+    return end[:9].reshape(3, 3), end[:9].reshape(3, 3) @ end[9:]
+
+
+@pytest.mark.parametrize("rate", [(1.0, 2.0, 0.3), (1.0, 0.0, 0.0)])
+def test_bodies_that_have_turned_dock_as_they_are_then(rate: tuple[float, float, float]) -> None:
+    other = {"at": [1, 0.2, 0.1], "mass": 1, "moments": [0.05, 0.03, 0.07], "velocity": [-0.2, 0, 0.4]}
+    own = {"at": [0, 0, 0], "mass": 2, "moments": [0.1, 0.2, 0.25], "velocity": [0.3, 0.1, 0], "angular_velocity": rate}
+    docked = {"kind": "weld", "name": "dock", "a": "a", "b": "b", "from": 0.5}
+    found = solved([0.6], ("trajectory",), bodies={"a": own, "b": other}, connections=[docked])
+    assert happened(found) == [("begin", "dock")]
+    # In the axes in which `a` lies then: two bodies of which the momenta about the common centre are those of one.
+    turned, omega = spun(np.diag([0.1, 0.2, 0.25]), np.eye(3), np.array(rate), 0.5)
+    to_b = np.array([1, 0.2, 0.1]) + 0.5 * np.array([-0.5, -0.1, 0.4])
+    inertia = turned @ np.diag([0.1, 0.2, 0.25]) @ turned.T
+    whole = inertia + np.diag([0.05, 0.03, 0.07]) + 2 / 3 * (to_b @ to_b * np.eye(3) - np.outer(to_b, to_b))
+    momentum = inertia @ omega + 2 / 3 * np.cross(to_b, [-0.5, -0.1, 0.4])
+    turn, after = spun(whole, np.eye(3), np.linalg.solve(whole, momentum), 0.1)
+    centre = np.array([1, 0.2, 0.1]) / 3 + 0.6 * (2 * np.array([0.3, 0.1, 0]) + np.array([-0.2, 0, 0.4])) / 3
+    np.testing.assert_allclose(column(found, "b.position")[0], centre + 2 / 3 * turn @ to_b, atol=1e-11)
+    np.testing.assert_allclose(column(found, "b.angular_velocity")[0], turn.T @ after, atol=1e-11)
+    np.testing.assert_allclose(column(found, "a.angular_velocity")[0], (turn @ turned).T @ after, atol=1e-11)
+
+
+@pytest.mark.parametrize("rate", ["2 + sin(t)", "sqrt(1 + t)", "1/(1 + t^2)", "(1 + t)^1.5", "atan(t)*exp(-t)"])
+def test_a_spring_begins_beside_a_drive_that_is_a_formula_of_time(rate: str) -> None:
+    found = solved(
+        [0.4, 2.0],
+        ("trajectory", "forces-in-time"),
+        bodies={"wheel": {"at": [0, 0], "mass": 2, "inertia": 0.3}},
+        connections=[
+            {"kind": "pin", "a": "wheel", "b": [0, 0]},
+            {"kind": "motor", "a": "wheel", "rate": rate},
+            {"kind": "torsion-spring", "name": "spring", "a": "wheel", "stiffness": 3, "from": 1},
+        ],
+    )
+
+    def turn(begin: float, end: float) -> float:
+        names = {name: getattr(mpmath, name) for name in ("sin", "sqrt", "atan", "exp")}
+        return float(mpmath.quad(lambda t: eval(rate.replace("^", "**"), {**names, "t": t}), [begin, end]))
+
+    np.testing.assert_allclose(column(found, "wheel.angle"), [turn(0, 0.4), turn(0, 2)], rtol=1e-14)
+    np.testing.assert_allclose(column(found, "spring.torque"), [0, -3 * turn(1, 2)], rtol=1e-14)
+
+
+def test_what_cannot_begin_says_which_field_would_have_to_be_what() -> None:
+    found = solved(
+        [0.4, 1.0],
+        bodies={"a": {"at": [0, 0], "mass": 1, "inertia": 0.3, "angular_velocity": 4}},
+        connections=[{"kind": "relation", "name": "gear", "of": "2*a.angle + 1", "from": 0.5}],
+    )
+    assert found.problem is not None
+    assert "connections/0/equals would have to be 5, as the formula is when it begins" in found.problem.explanation
 
 
 BOB = {"gravity": [0, -10], "bodies": {"bob": {"mass": 1, "at": [1, 0]}}}
