@@ -323,7 +323,7 @@ def spun(moments: np.ndarray, turned: np.ndarray, rate: np.ndarray, time: float)
     def change(_: float, y: np.ndarray) -> np.ndarray:
         matrix, omega = y[:9].reshape(3, 3), y[9:]
         return np.concatenate(
-            [np.cross(omega, matrix).ravel(), np.linalg.solve(moments, np.cross(moments @ omega, omega))]
+            [np.cross(matrix, omega).ravel(), np.linalg.solve(moments, np.cross(moments @ omega, omega))]
         )
 
     end = solve_ivp(
