@@ -192,8 +192,14 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
     if ended is None or runs[0].reached > left:
         return []
     if runs[1].ended is None:
-        when = f"{float(runs[0].reached):.6g} s after {float(phase.start):.17g} s"
-        raise _lost(phase, f'whether "{ended.name}" slips on {when} is not known')
+        since = float(phase.start)
+        raise AccuracyUnreachable(
+            None,
+            1.0,
+            f'whether "{ended.name}" slips on {float(runs[0].reached):.6g} s after {since:.17g} s is not known',
+            path=("times",),
+            remedy=f"ask for earlier times than {since:.6g} s only",
+        )
     number = next(i for i, one in enumerate(phase.unilateral) if one.name == ended.name)
     crossings = []
     states = [State.STICK if i == number else state for i, state in enumerate(phase.states)]
