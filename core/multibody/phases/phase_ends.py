@@ -250,8 +250,6 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
         singular = _singular(phase, watched, reach)
         until = _before_end_of_slip(phase, reach)
         hit = search.until(until if singular is None else min(until, float(singular.time) * BEFORE_SINGULAR))
-        if search.below:
-            raise _contradicted(phase, watched[search.below[0]])
         if hit is not None or singular is not None or until < reach or reach >= last:
             break
         reach = min(last, 2.0 * reach)
@@ -274,23 +272,17 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
     try:
         crossings = _located(phase, expansions.by(watch.watched), watch, one, left)
     except NotLocated:
-        fault = f'the event of "{watch.one.name}" {one.time:.6g} s after {float(phase.start):.17g} s cannot be located'
-        raise _lost(phase, fault) from None
+        since = float(phase.start)
+        raise AccuracyUnreachable(
+            None,
+            1.0,
+            f'the event of "{watch.one.name}" {one.time:.6g} s after {since:.17g} s cannot be located',
+            path=("times",),
+            remedy=f"ask for earlier times than {since:.6g} s only",
+        ) from None
     if crossings[0].time > left:
         return []
     return crossings if one.unsure == 0.0 else _unsure(phase, expansions.places, crossings[0], one.unsure, left)
-
-
-def _contradicted(phase: Phase, watch: Watch) -> AccuracyUnreachable:
-    """Return that what has to stay above zero in a phase is below it from its start on: its states are none."""
-    return _lost(phase, f'the state of "{watch.one.name}" from {float(phase.start):.17g} s on cannot be told')
-
-
-def _lost(phase: Phase, fault: str) -> AccuracyUnreachable:
-    """Return why a motion is not followed beyond the start of a phase."""
-    return AccuracyUnreachable(
-        None, 1.0, fault, path=("times",), remedy=f"ask for earlier times than {float(phase.start):.6g} s only"
-    )
 
 
 def _turned_back(phase: Phase, motions: Sequence[Expanded], watch: Watch, time: float, left: float) -> list[Crossing]:

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-from flint import arb
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from mpmath import acos, cos, ellipf, ellipk, linspace, mp, mpf, quad, sqrt
 from scipy.integrate import solve_ivp
 
-from core.balls import precision
-from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import BITS
-from core.multibody.phases.phase_ends import crossings_of
-from core.multibody.phases.phases import motion_in_phases
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import kinds
 from tests.core.multibody.worked_examples import column, read
@@ -50,16 +43,6 @@ def test_a_wall_at_the_turning_point_is_undecided(at: Any, wall: Any, modulus: s
     assert abs(answer.events[0].time - half) <= answer.events[0].error < 10 ** (-24 / order)
     assert answer.trajectory is not None
     assert answer.trajectory.rows.tolist() == [0]
-
-
-def test_a_phase_that_begins_beyond_what_ends_it_is_no_motion() -> None:
-    # The gap of the wall with its sign turned is below zero while the pendulum has room.
-    motion = motion_in_phases(read(pendulum("-0.5")), 0.1)
-    phase = motion.phases[0]
-    wall = phase.unilateral[0]
-    phase.unilateral, phase.openings = [replace(wall, gap={key: -x for key, x in wall.gap.items()})], {}
-    with precision(BITS), pytest.raises(AccuracyUnreachable, match='state of "wall" from 0 s on'):
-        crossings_of(motion.base, phase, arb("0.1"), [])
 
 
 def test_a_wall_at_the_end_of_the_circle_is_passed() -> None:
