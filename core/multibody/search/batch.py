@@ -12,7 +12,7 @@ from core.arrays import Floats, Integers
 _USUAL = 0.1
 """Share of pieces that is shorter than expected: what is left of these is expanded one by one."""
 
-MUCH_LONGER = 4.0
+MUCH_LONGER = 2.0
 """How many times as long as those before pieces are tried at most."""
 
 

@@ -57,7 +57,12 @@ def without_law(request: Json) -> Json:
 
 
 def by_its_motion(request: Json) -> bool:
-    """Return whether a force is a formula of the components or the speed of its place, which no relation rewrites."""
+    """Return whether what acts depends on components, places or occasions of the motion, which no relation rewrites.
+
+    That are formulas of a force of its place, and what begins, ends or strikes at a time, an event or a value.
+    """
+    if any(one["kind"] == "impulse" or one.keys() & {"from", "until"} for one in request.get("connections", ())):
+        return True
     forces = [one["force"] for one in request.get("connections", ()) if one["kind"] == "force" and "force" in one]
     return any(re.search(r"\b(speed|v?[xyz])\b", str(x)) for force in forces for x in force)
 
