@@ -82,7 +82,8 @@ def test_answered_forces_and_accelerations_satisfy_newton_and_euler(name: str) -
     for connection in found.connections:
         efforts = connection.efforts(placement, motion)
         names |= set(efforts)
-        for key, value in connection.laws(placement, motion).items():
+        # What strikes has no force between its blows, and none is answered.
+        for key, value in () if connection.strikes else connection.laws(placement, motion).items():
             assert forces[key] == pytest.approx(value, rel=1e-9, abs=1e-9)
         for rest in connection.held_rates(placement, motion).values():
             assert np.max(np.abs(rest)) < 1e-9
