@@ -395,8 +395,8 @@ TESTED_IN |= {
         ),
         "phases/test_sums": "phases/stretches",
         "phases/test_changed_connections": (
-            "audit/blows audit/stages contacts/impulsive_rates language/occasions phases/schedule table/blows "
-            "table/timed"
+            "audit/blows audit/occasions audit/stages contacts/impulsive_rates language/occasions phases/schedule "
+            "table/blows table/timed"
         ),
         "proven/test_proven_answer": "proven/part_proof",
         "parts/test_joined_answer": (

@@ -27,6 +27,7 @@ from core.multibody.audit.failure import ROUNDING, Ledger, Verdict
 from core.multibody.audit.impacts import Impacts
 from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
+from core.multibody.audit.occasions import check_occasions
 from core.multibody.audit.placement import LARGEST, Numbers, Placement, Pose, Twist, moved
 from core.multibody.audit.repetition import check_repetition, times_of_period
 from core.multibody.audit.samples import Part, Samples, joined, samples_of
@@ -60,7 +61,11 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         if answer.phases == ():
             return Verdict()
-        verdict = Verdict()
+        occasions = Ledger(ROUNDING)
+        check_occasions(occasions, scene, answer, max(float(times.max(initial=0.0)), 0.0))
+        verdict = Verdict(occasions.worst)
+        if verdict.failure is not None:
+            return verdict
         for stage in stages_of(scene, answer, sampler):
             if not stage.description.moderate:
                 return Verdict(compared=False)

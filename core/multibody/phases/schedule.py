@@ -74,33 +74,39 @@ class Schedule:
         Raises
         ------
         InvalidParameter
-            For what is no occasion.
+            For what is no occasion, and for a time at which something is to end before it begins, or as it does.
         """
         names, found = base.scene.names(), list[Entry]()
         for name, (i, connection) in zip(names, base.scene.numbered(), strict=True):
+            times = dict[str, Ball]()
             for field_, written in connection.occasions().items():
                 path = ("connections", i, field_)
                 when = occasion(written, base.measures.numerals, names, path)
                 if field_ != "at" and when.time is not None and not when.time > 0:
                     raise InvalidParameter(path, "be later than the start", remedy="leave it out")
                 found.append(Entry(name, KINDS[field_], when, path))
+                if when.time is not None:
+                    times[field_] = when.time
+            if len(times) == 2 and not times["until"] > times["from"]:
+                rule = "be later than the time at which the connection begins, its `from`"
+                remedy = "exchange the two times, or leave out the connection, which would never act"
+                raise InvalidParameter(("connections", i, "until"), rule, remedy=remedy)
         return cls(found)
 
-    def due(self, now: Ball, events: Sequence[Event]) -> list[Entry]:
-        """Return what happens now, and take it off the list; what has not begun does not end."""
+    def pending(self) -> list[Entry]:
+        """Return what may happen next: what has not begun does not end."""
         waiting = {entry.name for entry in self.entries if entry.what == "begin"}
-        found = [
-            entry
-            for entry in self.entries
-            if entry.occasion.has_come(now, events, entry.passages)
-            and not (entry.what == "end" and entry.name in waiting)
-        ]
+        return [entry for entry in self.entries if not (entry.what == "end" and entry.name in waiting)]
+
+    def due(self, now: Ball, events: Sequence[Event]) -> list[Entry]:
+        """Return what happens now, and take it off the list."""
+        found = [entry for entry in self.pending() if entry.occasion.has_come(now, events, entry.passages)]
         self.entries = [entry for entry in self.entries if entry not in found]
         return found
 
     def until(self, end: Ball) -> Ball:
         """Return the first time at which something is to happen, or an end before that."""
-        times = [time for entry in self.entries if (time := entry.occasion.time) is not None]
+        times = [time for entry in self.pending() if (time := entry.occasion.time) is not None]
         return min([time for time in times if time < end], key=lambda time: time.mid(), default=end)
 
     def forbids(self, names: Sequence[str]) -> bool:

@@ -15,8 +15,10 @@ from scipy.integrate import solve_ivp
 
 from core.errors import InvalidParameter, NotApplicable, SelfCheckFailed
 from core.multibody.answer import SceneSolution
+from core.multibody.language.occasions import AtTime
 from core.multibody.language.reading import scene_from
 from core.multibody.phases import changed_connections
+from core.multibody.phases.schedule import Schedule
 from core.multibody.solve import solve_scene
 from core.systems.trajectory import MotionEvent
 
@@ -383,7 +385,7 @@ def test_what_cannot_begin_says_which_field_would_have_to_be_what() -> None:
     assert "connections/0/equals would have to be 5, as the formula is when it begins" in found.problem.explanation
 
 
-BOB = {"gravity": [0, -10], "bodies": {"bob": {"mass": 1, "at": [1, 0]}}}
+BOB: dict[str, Any] = {"gravity": [0, -10], "bodies": {"bob": {"mass": 1, "at": [1, 0]}}}
 
 
 def rod_until(moment: Any) -> dict[str, Any]:
@@ -395,6 +397,8 @@ def rod_until(moment: Any) -> dict[str, Any]:
     [
         (rod_until(-1), ("until",), "be at least 0 s"),
         (rod_until(0), ("until",), "be later than the start"),
+        ({**rod_until(0.3), "from": 0.5}, ("until",), "be later than the time at which the connection begins"),
+        ({**rod_until("1/3"), "from": "1/3"}, ("until",), "be later than the time at which the connection begins"),
         (rod_until({"event": {"name": "rob"}}), ("until", "event", "name"), "name a connection"),
         (rod_until({"event": {"name": "rod-1", "kind": "tuch"}}), ("until", "event", "kind"), "be one of touch"),
         (rod_until({"event": {"name": "rod-1", "nth": 0}}), ("until", "event", "nth"), "whole number"),
@@ -434,3 +438,43 @@ def test_the_audit_refuses_a_blow_that_is_not_given_whole(monkeypatch: pytest.Mo
     connections = [{"kind": "impulse", "name": "kick", "place": "bob", "impulse": [0, 3], "at": 0.5}]
     with pytest.raises(SelfCheckFailed, match="momentum at an impact"):
         solved([1.0], connections=connections, **BOB)
+
+
+NEVER = {"when": {"quantity": "bob.position.x", "equals": 50}}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_end_of_what_never_begins_holds_nothing_else_up(seed: int) -> None:
+    # Constant forces and blows between times: v changes by J and by F (b - a), each over what is left of the motion.
+    random = np.random.default_rng(seed)
+    times = np.sort(random.integers(1, 99, 4)) / 100 + np.arange(4) / 1000
+    begin, end, blow, out = (float(x) for x in random.permutation(times))
+    begin, end = sorted((begin, end))
+    force, impulse = (float(x) for x in random.integers(1, 5, 2))
+    found = solved(
+        [1.2],
+        connections=[
+            {"kind": "force", "name": "never", "place": "bob", "force": [7, 0], "from": NEVER, "until": out},
+            {"kind": "force", "name": "f", "place": "bob", "force": [force, 0], "from": begin, "until": end},
+            {"kind": "impulse", "name": "i", "place": "bob", "impulse": [impulse, 0], "at": blow},
+        ],
+        **BOB,
+    )
+    expected = sorted([(begin, "begin", "f"), (end, "end", "f"), (blow, "impulse", "i")])
+    assert [(one.time, one.kind, one.name) for one in found.events] == expected
+    speed = impulse + force * (end - begin)
+    far = 1 + impulse * (1.2 - blow) + force * (end - begin) * (1.2 - (begin + end) / 2)
+    assert column(found, "bob.velocity")[0, 0] == pytest.approx(speed, rel=1e-14)
+    assert column(found, "bob.position")[0, 0] == pytest.approx(far, rel=1e-14)
+
+
+def test_the_audit_refuses_a_motion_in_which_an_occasion_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Schedule, "until", lambda own, end: end)
+    with pytest.raises(SelfCheckFailed, match="number of events end"):
+        solved([1.0], connections=[rod_until(0.5)], **BOB)
+
+
+def test_the_audit_refuses_an_occasion_at_another_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(AtTime, "has_come", lambda own, now, events, passages: True)
+    with pytest.raises(SelfCheckFailed, match="time of its end"):
+        solved([1.0], connections=[rod_until(0.5)], **BOB)
