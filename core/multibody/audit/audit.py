@@ -168,7 +168,8 @@ class _Audit:
         self._check_newton(ledger, freedoms, samples, ahead, after, asked, sizes)
         if asked.beginning is not None:
             impacts, part = asked.beginning
-            impacts.check(ledger, description, freedoms, samples_of(description, [part]))
+            instant = self.stage.instant
+            impacts.check(ledger, instant, Freedoms(instant), samples_of(instant, [part]))
         first = 1 + len(asked.halves) * NODES
         if asked.repeated:
             later = samples.at(slice(first, first + asked.repeated))

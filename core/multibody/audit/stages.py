@@ -37,6 +37,9 @@ class Stage:
         What is answered of it; accelerations, forces and the energy of the start in the first alone.
     whole : SceneSolution
         What is answered of the whole motion.
+    instant : Description
+        With the connections that have ended where it begins, after impulses of the same instant: these act on what
+        holds or touches then.
     begin, end : float
         From the start of the scene (s).
     """
@@ -44,6 +47,7 @@ class Stage:
     description: Description
     answer: SceneSolution
     whole: SceneSolution
+    instant: Description
     begin: float = 0.0
     end: float = inf
 
@@ -57,7 +61,8 @@ def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator
     """Yield the stages of a motion, of a scene in which nothing begins or ends the whole."""
     answered = answer.phases[0].states if answer.phases else None
     if not scene.changes:
-        yield Stage(description_of(scene, answered=answered), answer, answer)
+        description = description_of(scene, answered=answered)
+        yield Stage(description, answer, answer, description)
         return
     acting = {name for name, one in zip(scene.names(), scene.connections, strict=True) if one.starts}
     numbers = {name: number for name, (number, _) in zip(scene.names(), scene.numbered(), strict=True)}
@@ -71,25 +76,43 @@ def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator
         acting = (acting | {event.name for event in now if event.kind == "begin"}) - {
             event.name for event in now if event.kind == "end"
         }
-        known = {name: own for name, own in known.items() if name in acting}
-        found = description_of(part_of(scene, {numbers[name] for name in acting}), answered=answered, bodies=bodies)
-        members = {name: tuple(one for one in found.connections if one.name.split(".")[0] == name) for name in acting}
+        present = acting | _ended_after_impulses(answer, begin)
+        known = {name: own for name, own in known.items() if name in present}
+        found = description_of(part_of(scene, {numbers[name] for name in present}), answered=answered, bodies=bodies)
+        members = {name: tuple(one for one in found.connections if one.name.split(".")[0] == name) for name in present}
         known = {**members, **known}
-        own = tuple(one for name in scene.names() if name in acting for one in known[name])
-        description = replace(found, connections=own)
         if begin < end:
-            yield Stage(description, _of_stage(answer, begin, end), answer, begin, end)
+            after, instant = (
+                replace(
+                    found,
+                    connections=tuple(one for name in scene.names() if name in some for one in known[name]),
+                    undefined={name: what for name, what in found.undefined.items() if name in some},
+                )
+                for some in (acting, present)
+            )
+            yield Stage(after, _of_stage(answer, begin, end), answer, instant, begin, end)
         if end < inf:
             try:
                 columns = sampler(np.array([end]), False)
             except MechanicsError:
                 # Where the motion is not known as well as doubles are, what follows is not compared.
                 return
-            start = samples_of(description, [Part(np.array([end]), columns, slice(0, 1))])
+            start = samples_of(found, [Part(np.array([end]), columns, slice(0, 1))])
             bodies = {
                 name: replace(body, start=_first(start.placement[name], end), velocity=None)
                 for name, body in found.bodies.items()
             }
+
+
+def _ended_after_impulses(answer: SceneSolution, time: float) -> set[str]:
+    """Return the connections that end at a time behind events with impulses, as events are in order."""
+    found, struck = set[str](), False
+    for event in answer.events:
+        if event.time == time:
+            struck = struck or bool(event.impulses)
+            if event.kind == "end" and struck:
+                found.add(event.name)
+    return found
 
 
 def _first(pose: Pose, time: float) -> Pose:

@@ -478,3 +478,19 @@ def test_the_audit_refuses_an_occasion_at_another_time(monkeypatch: pytest.Monke
     monkeypatch.setattr(AtTime, "has_come", lambda own, now, events, passages: True)
     with pytest.raises(SelfCheckFailed, match="time of its end"):
         solved([1.0], connections=[rod_until(0.5)], **BOB)
+
+
+@pytest.mark.parametrize("until", [{"event": {"name": "r"}}, {"event": {"kind": "begin", "name": "r"}}])
+def test_a_rod_that_begins_and_ends_at_once_takes_the_speed_along_it(until: Any) -> None:
+    rod = {"kind": "rod", "name": "r", "a": "bob", "b": [0, 0], "from": 0.5, "until": until}
+    found = solved([1.2], connections=[rod], **BOB)
+    # At (1, -5/4) with (0, -5): what is left is (v.t) t with t across the rod.
+    assert happened(found) == [("begin", "r"), ("end", "r")]
+    np.testing.assert_allclose(column(found, "bob.velocity")[0], [-100 / 41, -80 / 41 - 7], rtol=1e-14)
+
+
+def test_a_floor_that_is_taken_away_by_its_touch_has_pushed() -> None:
+    floor = {"kind": "contact", "name": "f", "place": "bob", "on": {"at": [0, -1.25]}, "restitution": 0.5}
+    found = solved([1.0], connections=[{**floor, "until": {"event": {"kind": "touch", "name": "f"}}}], **BOB)
+    assert happened(found) == [("touch", "f"), ("end", "f")]
+    assert column(found, "bob.velocity")[0, 1] == pytest.approx(2.5 - 5, abs=1e-13)
