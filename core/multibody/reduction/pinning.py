@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, constant, entry, is_zero
+from core.multibody.algebra.polynomials import (
+    ONE,
+    Ball,
+    LinearForm,
+    Poly,
+    add_term,
+    combined,
+    constant,
+    entry,
+    is_zero,
+)
 from core.multibody.equations.dynamics import undetermined, weightless
 from core.multibody.reduction.centre_of_mass import centred, free_shift
 from core.multibody.reduction.reduction import Reduced, recast, substitute
@@ -33,7 +43,7 @@ def pin(state: Reduced) -> bool:
             row
             for number, row in enumerate(table.rows)
             if row.drag
-            or any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
+            or any(_at_rest(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
             or number in letting_go
         ]
         leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
@@ -86,47 +96,68 @@ def _moved_with_mass(table: Table) -> set[int]:
     return found
 
 
-def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
-    """Return whether an affine polynomial is zero whatever the coordinates that are not pinned."""
-    total: Ball = ZERO
+def _at_rest(table: Table, poly: Poly, pinned: set[int]) -> Poly:
+    """Return an affine polynomial where coordinates are pinned, as one of the others."""
+    total: Poly = {}
     for key, value in poly.items():
-        if not key:
-            total = total + value
-        elif key[0] in pinned:
-            total = total + value * table.q[key[0]]
-        else:
-            return False
-    return is_zero(total)
+        resting = key and key[0] in pinned
+        add_term(total, () if resting else key, value * table.q[key[0]] if resting else value)
+    return {key: value for key, value in total.items() if not is_zero(value)}
 
 
 def _letting_go(table: Table, pinned: set[int]) -> set[int]:
-    """Return the numbers of rows that keep one coordinate at rest alone, and leave it free where others vanish.
+    """Return the numbers of rows that keep coordinates at rest only where polynomials of others do not vanish.
 
-    So does x y + z^2 = 0 with x = z = 0 where y = 0: there the motion may go on along other places. What has no
-    mass, as the products of a formula, is taken from the rows before.
+    So does x y + z^2 = 0 with x = z = 0 where y = 0: there the motion may go on along other places. The rows are a
+    matrix of polynomials, in which other rows are taken from each as far as they have constant entries, as those of
+    what formulas multiply: of p = x y and y = p t one row is left, in which y has 1 - x t. The lines of a direction,
+    which has no mass, depend on one another where its length is zero, and that ends a motion by itself.
     """
-    holding = {
-        number: {j: poly for j, poly in row.rates.items() if j in pinned and not _vanishes(table, poly, pinned)}
-        for number, row in enumerate(table.rows)
-    }
-    for j in pinned - {i for key in table.mass for i in key}:
-        plain = [number for number, line in holding.items() if set(line.get(j, ())) == {()}]
-        if plain:
-            first = holding.pop(min(plain, key=lambda number: len(holding[number])))
-            for number in plain:
-                if number in holding:
-                    line, share = holding[number], holding[number][j][()] / first[j][()]
-                    rest = {k: combined((ONE, line.get(k, {})), (-share, first.get(k, {}))) for k in line | first}
-                    holding[number] = {k: poly for k, poly in rest.items() if poly}
-    one = {number: next(iter(line.values())) for number, line in holding.items() if len(line) == 1}
-    return {number for number, poly in one.items() if any(key and key[0] not in pinned for key in poly)}
+    heavy = {i for key in table.mass for i in key}
+    holding: dict[int, LinearForm] = {}
+    plain: dict[int, set[int]] = {}
+    for number, row in enumerate(table.rows):
+        line = {j: _at_rest(table, poly, pinned) for j, poly in row.rates.items() if j in pinned}
+        holding[number] = {j: poly for j, poly in line.items() if poly}
+        plain[number] = heavy | {j for j in pinned if set(row.rates.get(j, {()})) == {()}}
+    while True:
+        pivots = (
+            (len(line), number, j)
+            for number, line in holding.items()
+            for j, poly in line.items()
+            if set(poly) == {()} and j in plain[number]
+        )
+        pivot = min(pivots, default=None)
+        if pivot is None:
+            changing = {n: line for n, line in holding.items() if any(set(poly) != {()} for poly in line.values())}
+            return {number for number, line in changing.items() if len(line) == 1 or heavy.intersection(line)}
+        _, number, j = pivot
+        first = holding.pop(number)
+        for other, line in holding.items():
+            if j in line:
+                share = combined((-1 / first[j][()], line[j]))
+                rest = {
+                    k: combined((ONE, line.get(k, {})), (ONE, _product(share, first.get(k, {}))))
+                    for k in line | first
+                    if k != j
+                }
+                holding[other] = {k: poly for k, poly in rest.items() if poly}
+
+
+def _product(first: Poly, second: Poly) -> Poly:
+    """Return the product of two polynomials of any degree."""
+    total: Poly = {}
+    for a, x in first.items():
+        for b, y in second.items():
+            add_term(total, tuple(sorted(a + b)), x * y)
+    return total
 
 
 def _stays(table: Table, i: int, pinned: set[int], coupled: Iterable[tuple[int, ...]], live: list[Row]) -> bool:
     """Return whether the equation of a pinned coordinate vanishes, the multipliers of idle rows being zero."""
     for row in live:
         for line in (row.rates, row.drag):
-            if i in line and not _vanishes(table, line[i], pinned):
+            if i in line and _at_rest(table, line[i], pinned):
                 return False
     push: Ball = entry(table.load, i)
     carried: dict[int, Ball] = {}

@@ -205,6 +205,29 @@ def test_a_motion_ends_where_its_surface_has_no_normal(
     assert abs(answer.ended.time - end) <= answer.ended.error
 
 
+@pytest.mark.parametrize(
+    ("formulas", "velocity", "end"),
+    [
+        # y = 0 beside x = 1/t, x = 1 + 1/t and x = 4/t.
+        (["y*x*t - y"], [1, 0], math.sqrt(2) - 1),
+        (["y*x*t - y*t - y"], [1, 0], (math.sqrt(5) - 1) / 2),
+        (["y*x*x*t - 4*y*x + y*y*t"], [1, 0], math.sqrt(5) - 1),
+        # Of two surfaces that hold two coordinates, the determinant is x^2 - t^2.
+        (["y*x - z*t", "z*x - y*t"], [-0.5, 0, 0], 4 / 3),
+    ],
+)
+def test_a_motion_ends_where_what_holds_it_is_crossed_in_time(
+    formulas: list[str], velocity: list[float], end: float
+) -> None:
+    body = {"mass": 1, "at": [2, 0, 0][: len(velocity)], "velocity": velocity}
+    tracks = [{"kind": "track", "place": "a", "on": {"surface": formula}} for formula in formulas]
+    scene = {"bodies": {"a": body}, "gravity": [0] * len(velocity), "connections": tracks}
+    answer = solve_scene(scene_from(scene), [0.0, 2.0])
+    assert answer.ended is not None
+    assert answer.ended.kind == "singular"
+    assert abs(answer.ended.time - end) <= answer.ended.error
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_motion_ends_where_its_plane_meets_others(seed: int) -> None:
     # On the plane n x = d its acceleration is g - (g n) n / n^2; m x = e is where a quadratic of time vanishes.
