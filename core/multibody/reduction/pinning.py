@@ -110,27 +110,28 @@ def _letting_go(table: Table, pinned: set[int]) -> set[int]:
 
     So does x y + z^2 = 0 with x = z = 0 where y = 0: there the motion may go on along other places. The rows are a
     matrix of polynomials, in which other rows are taken from each as far as they have constant entries, as those of
-    what formulas multiply: of p = x y and y = p t one row is left, in which y has 1 - x t. The lines of a direction,
-    which has no mass, depend on one another where its length is zero, and that ends a motion by itself.
+    what formulas multiply: of p = x y and y = p t one row is left, in which y has 1 - x t. Of rows that hold several
+    coordinates only those of formulas let go, which are linear in one: the axes of a body never depend on one another,
+    and the lines of a direction, which has no mass, where its length is zero, and that ends a motion by itself.
     """
     heavy = {i for key in table.mass for i in key}
     holding: dict[int, LinearForm] = {}
-    plain: dict[int, set[int]] = {}
+    linear: dict[int, set[int]] = {}
     for number, row in enumerate(table.rows):
         line = {j: _at_rest(table, poly, pinned) for j, poly in row.rates.items() if j in pinned}
         holding[number] = {j: poly for j, poly in line.items() if poly}
-        plain[number] = heavy | {j for j in pinned if set(row.rates.get(j, {()})) == {()}}
+        linear[number] = {j for j, poly in row.rates.items() if set(poly) == {()}}
     while True:
         pivots = (
             (len(line), number, j)
             for number, line in holding.items()
             for j, poly in line.items()
-            if set(poly) == {()} and j in plain[number]
+            if set(poly) == {()} and (j in heavy or j in linear[number] or j not in table.rows[number].rates)
         )
         pivot = min(pivots, default=None)
         if pivot is None:
             changing = {n: line for n, line in holding.items() if any(set(poly) != {()} for poly in line.values())}
-            return {number for number, line in changing.items() if len(line) == 1 or heavy.intersection(line)}
+            return {number for number, line in changing.items() if len(line) == 1 or linear[number]}
         _, number, j = pivot
         first = holding.pop(number)
         for other, line in holding.items():
