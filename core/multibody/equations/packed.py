@@ -27,6 +27,8 @@ from core.multibody.table.table import Table
 
 GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 5}
 """Coordinates of one unit share the scale by which steps are chosen."""
+ANGLES = GROUPS["rad"]
+"""The group of which one radian is the scale, wherever its coordinates are."""
 FORCES = 4
 """The group of multipliers, whose steps are chosen as those of coordinates; a clock, beyond it, bounds none."""
 

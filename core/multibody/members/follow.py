@@ -13,6 +13,7 @@ import numpy as np
 from core.arrays import Floats, Integers
 from core.multibody.equations.packed import two_to
 from core.multibody.members.lane_doubles import follow_in_doubles
+from core.multibody.members.lane_motion import Follow
 from core.multibody.members.lane_pairs import follow_in_pairs
 from core.multibody.members.lane_table import LaneForm
 from core.multibody.members.member_audit import MemberWindows, windows_of
@@ -152,7 +153,7 @@ class _Tables:
     times : ndarray, shape (members, t)
         Those of the question, those that tell natural sizes, those of the windows (s).
     seen : ndarray
-        As `follow_in_doubles` takes it.
+        As `lane_motion.following` tells.
     states_alone : ndarray of bool
     """
 
@@ -214,8 +215,9 @@ def _of_group(group: _Group, numbers: Floats, times: Floats, accuracy: float) ->
     """Follow members of one form in doubles, and in pairs those for which that is too rough."""
     form, frames = group.setups[0].form, group.plan.frames
     tables = _tables(group, numbers, times)
-    doubles, turns = _in_doubles(form, tables)
-    reference = _in_pairs(form, tables, REFERENCE_ORDER, REFERENCE_TOLERANCE)
+    doubles, turns = _run(follow_in_doubles, form, tables, ORDER, TOLERANCE)
+    tables = replace(tables, seen=tables.seen[:, :0])
+    reference, _ = _run(follow_in_pairs, form, tables, REFERENCE_ORDER, REFERENCE_TOLERANCE)
     reduced = _measured(tables, doubles, reference, DOUBLES_SHARE)
     coarse = _states(tables, reduced, turns)
     found, known = _columns(frames, tables, len(times), coarse, coarse, reduced.known)
@@ -224,8 +226,8 @@ def _of_group(group: _Group, numbers: Floats, times: Floats, accuracy: float) ->
     if not rough.any() or accuracy < FINEST:
         return [first]
     rest = tables.at(rough)
-    fine = _in_pairs(form, rest, FINE_ORDER, FINE_TOLERANCE)
-    check = _in_pairs(form, rest, CHECK_ORDER, CHECK_TOLERANCE)
+    fine, _ = _run(follow_in_pairs, form, rest, FINE_ORDER, FINE_TOLERANCE)
+    check, _ = _run(follow_in_pairs, form, rest, CHECK_ORDER, CHECK_TOLERANCE)
     pairs = _measured(rest, fine, check, FINE_SHARE)
     pairs = replace(
         pairs,
@@ -283,26 +285,15 @@ def _scaled(tables: _Tables) -> tuple[Floats, Floats, Integers]:
     return scaled, np.ascontiguousarray(scaled[:, -1]), np.argsort(order, axis=1, kind="stable")
 
 
-def _in_doubles(form: LaneForm, tables: _Tables) -> tuple[Run, Integers]:
-    """Return a run in doubles at the times of the tables, and the turns of directions, shape (members, t, d)."""
-    scaled, ends, back = _scaled(tables)
-    shape, count = (*scaled.shape, form.n), tables.seen.shape[1]
-    q, v, reached = np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(len(scaled), dtype=np.int64)
-    first, second, turns = np.zeros(shape), np.zeros(shape), np.zeros((*scaled.shape, count), dtype=np.int64)
-    follow_in_doubles(form, tables.rows, ends, ORDER, TOLERANCE, scaled, tables.seen, first, second, turns, reached)
-    at = back[:, :, None]
-    q[..., 0], v[..., 0] = np.take_along_axis(first, at, axis=1), np.take_along_axis(second, at, axis=1)
-    return (q, v, reached), np.take_along_axis(turns, at, axis=1)
-
-
-def _in_pairs(form: LaneForm, tables: _Tables, order: int, tolerance: float) -> Run:
-    """Return a run in pairs at the times of the tables."""
+def _run(follow: Follow, form: LaneForm, tables: _Tables, order: int, tolerance: float) -> tuple[Run, Integers]:
+    """Return a run at the times of the tables, and the turns of directions, shape (members, t, d)."""
     scaled, ends, back = _scaled(tables)
     shape = (*scaled.shape, form.n, 2)
     q, v, reached = np.zeros(shape), np.zeros(shape), np.zeros(len(scaled), dtype=np.int64)
-    follow_in_pairs(form, tables.rows, ends, order, tolerance, scaled, q, v, reached)
-    at = back[:, :, None, None]
-    return np.take_along_axis(q, at, axis=1), np.take_along_axis(v, at, axis=1), reached
+    turns = np.zeros((*scaled.shape, tables.seen.shape[1]), dtype=np.int64)
+    follow(form, tables.rows, ends, order, tolerance, scaled, tables.seen, q, v, turns, reached)
+    q, v = (np.take_along_axis(x, back[:, :, None, None], axis=1) for x in (q, v))
+    return (q, v, reached), np.take_along_axis(turns, back[:, :, None], axis=1)
 
 
 def _measured(tables: _Tables, run: Run, other: Run, share: float) -> _Reduced:

@@ -1,4 +1,4 @@
-"""The motion of many members in pairs of doubles, eight at a time: `motion.series_pairs.advance_pairs` in lanes."""
+"""The motion of eight members at a time in pairs: the operations of `motion.series_pairs.advance_pairs` in lanes."""
 
 from __future__ import annotations
 
@@ -6,109 +6,30 @@ import math
 
 import numpy as np
 
-from core.arrays import Floats, Integers
+from core.arrays import Floats
 from core.compiled import fma, kernel
-from core.double_double import dd_add, dd_add_d, dd_mul, dd_mul_d, fast_two_sum, two_prod, two_sum
+from core.double_double import Pair, dd_add, dd_mul, dd_mul_d, fast_two_sum, two_prod, two_sum
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.algebra.square_inverse import SUMMED_BELOW
-from core.multibody.members.lane_doubles import (
-    FARTHEST,
-    add_corrections,
-    add_residual,
-    ends_of_steps,
-    put_back,
-    take_up,
-)
-from core.multibody.members.lane_space import LaneSpace, lane_coefficients, lane_inverse, lane_space, lane_steps
-from core.multibody.members.lane_table import OF_LINE, OF_RATE, LaneForm
-from core.multibody.motion.series_pairs import LAST_DIGITS
+from core.multibody.members.lane_doubles import add_corrections, add_residual
+from core.multibody.members.lane_motion import following
+from core.multibody.members.lane_series import lane_coefficients
+from core.multibody.members.lane_space import LaneSpace, lane_inverse
+from core.multibody.members.lane_table import LaneForm
+from core.multibody.motion.series_pairs import moved_pairs, paired_coefficients
 
 
 @kernel()
-def follow_in_pairs(
-    form: LaneForm,
-    numbers: Floats,
-    ends: Floats,
-    order: int,
-    tolerance: float,
-    times: Floats,
-    q: Floats,
-    v: Floats,
-    reached: Integers,
-) -> None:
-    """Follow members as `follow_in_doubles` does, in pairs; q and v of shape (members, t, n, 2)."""
-    n = form.n
-    space = lane_space(form, order, 2)
-    member, fresh, last = np.full(WIDTH, -1), np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
-    passed, begun = np.zeros(WIDTH, np.int64), np.zeros((2, WIDTH))
-    paired = min(max(int(order * (1.0 + LAST_DIGITS / math.log2(tolerance))), 1), order - 1)
-    following, going = 0, 0
+def _expand(form: LaneForm, space: LaneSpace, tolerance: float) -> None:
+    """Fill in the Taylor coefficients; a lane ends in which one is no number."""
+    order = space.series.shape[1] - 1
+    _changes(form, space, 1)
+    _coefficients(form, space, paired_coefficients(order, tolerance))
     for lane in range(WIDTH):
-        if following < numbers.shape[0]:
-            take_up(form, space, numbers, following, lane)
-            member[lane], fresh[lane] = following, 1
-            following += 1
-            going += 1
-    while going > 0:
-        for lane in range(WIDTH):
-            space.alive[lane] = 1
-            begun[0, lane], begun[1, lane] = space.clock[0, lane], space.clock[1, lane]
-        for plane in range(2):
-            for i in range(n):
-                put_lanes(space.path[plane, 0], WIDTH * i, lanes_at(space.q[plane], WIDTH * i))
-                put_lanes(space.path[plane, 1], WIDTH * i, lanes_at(space.v[plane], WIDTH * i))
-                put_lanes(space.rates[plane, 0], WIDTH * i, lanes_at(space.v[plane], WIDTH * i))
-        _changes(form, space, 1)
-        _coefficients(form, space, paired)
-        for lane in range(WIDTH):
-            for i in range(n):
-                if not math.isfinite(space.path[0, order, i, lane]):
-                    space.alive[lane] = 0
-        lane_steps(form, space, tolerance)
-        ends_of_steps(space, ends, fresh, member, last)
-        _move(form, space)
-        for lane in range(WIDTH):
-            for i in range(n):
-                if not (abs(space.q[0, i, lane]) < FARTHEST and abs(space.v[0, i, lane]) < FARTHEST):
-                    space.alive[lane] = 0
-            if fresh[lane] == 1:
-                space.alive[lane] = 1
-                put_back(form, space, lane)
-        _entries(form, space)
-        _inverse(form, space)
-        if form.m > 0:
-            _correct(form, space)
-        for lane in range(WIDTH):
-            own = member[lane]
-            if own < 0:
-                continue
-            if space.alive[lane] == 1 and fresh[lane] == 1:
-                put_back(form, space, lane)
-                fresh[lane] = 0
-                passed[lane] = 0
-                continue
-            if space.alive[lane] == 1:
-                space.clock[0, lane], space.clock[1, lane] = dd_add_d(
-                    space.clock[0, lane], space.clock[1, lane], space.h[lane]
-                )
-                while passed[lane] < times.shape[1]:
-                    s = passed[lane]
-                    if last[lane] == 0 and not times[own, s] < space.clock[0, lane]:
-                        break
-                    hh, hl = dd_add(times[own, s], 0.0, -begun[0, lane], -begun[1, lane])
-                    _sample(space.path, hh, hl, lane, own, s, q, v)
-                    passed[lane] += 1
-                if last[lane] == 0:
-                    continue
-                reached[own] = 1
-            if following < numbers.shape[0]:
-                take_up(form, space, numbers, following, lane)
-                member[lane], fresh[lane] = following, 1
-                following += 1
-            else:
-                member[lane] = -1
-                going -= 1
+        for i in range(form.n):
+            if not math.isfinite(space.series[0, order, i, lane]):
+                space.alive[lane] = 0
 
 
 @kernel()
@@ -130,12 +51,11 @@ def _entries(form: LaneForm, space: LaneSpace) -> None:
 @kernel()
 def _changes(form: LaneForm, space: LaneSpace, k: int) -> None:
     """Form coefficient k of the entries of W that vary."""
-    x, path, path_tail, high, low = space.x, space.path[0], space.path[1], space.entries[0], space.entries[1]
-    of_path, of_entries = k * WIDTH * form.n, k * WIDTH * high.shape[1]
+    x, high, low, of_power = space.x, space.series[0], space.series[1], WIDTH * form.series
     for p in range(form.varying.shape[0]):
-        e, i = of_entries + WIDTH * form.varying[p, 1], of_path + WIDTH * form.varying[p, 2]
+        e, i = (k - 1) * of_power + WIDTH * form.varying[p, 1], k * of_power + WIDTH * form.varying[p, 2]
         at = WIDTH * (form.slopes + 2 * p)
-        sh, sl = dd_mul(lanes_at(x, at), lanes_at(x, at + WIDTH), lanes_at(path, i), lanes_at(path_tail, i))
+        sh, sl = dd_mul(lanes_at(x, at), lanes_at(x, at + WIDTH), lanes_at(high, i), lanes_at(low, i))
         if form.varying[p, 3] == 1:
             sh, sl = dd_add(lanes_at(high, e), lanes_at(low, e), sh, sl)
         put_lanes(high, e, sh)
@@ -150,20 +70,31 @@ def _add(high: Floats, low: Floats, row: int, ah: float, al: float, bh: float, b
     put_lanes(low, row, sl)
 
 
+@kernel(forceinline=True)
+def _sum(high: Floats, low: Floats, a: int, b: int, behind: int, of_power: int) -> Pair:
+    """Return the sum of products of coefficients, those in the middle first, then the newest."""
+    sh, sl = alike(0.0), alike(0.0)
+    for step in range(of_power, behind + 2 * of_power, of_power):
+        # Those of the newest coefficients, 0 and k, come last.
+        up = step if step < behind else 0 if step == behind or behind == 0 else behind
+        c, d = a + up, b + behind - up
+        sh, sl = gathered(sh, sl, lanes_at(high, c), lanes_at(low, c), lanes_at(high, d), lanes_at(low, d))
+    return sh, sl
+
+
 @kernel()
 def _coefficients(form: LaneForm, space: LaneSpace, until: int) -> None:
     """Fill in the Taylor coefficients up to until + 1 in pairs, and the others in doubles."""
-    n, m, x = form.n, form.m, space.x
-    size = n + m
-    path, path_tail, rates, rates_tail = space.path[0], space.path[1], space.rates[0], space.rates[1]
-    pull, pull_tail, entries, entries_tail = space.pull[0], space.pull[1], space.entries[0], space.entries[1]
+    n, size, x = form.n, form.n + form.m, space.x
+    high, low = space.series[0], space.series[1]
     right, right_tail, columns, columns_tail = space.right[0], space.right[1], space.columns[0], space.columns[1]
-    of_path, of_pull, of_entries = WIDTH * n, WIDTH * m, WIDTH * entries.shape[1]
-    last = path.shape[0] - 3
-    zero, one = alike(0.0), alike(1.0)
-    for i in range(2 * of_path, path.shape[0] * of_path, WIDTH):
-        put_lanes(path_tail, i, zero)
+    of_power, powers = WIDTH * form.series, space.series.shape[1]
+    zero = alike(0.0)
+    for k in range(until + 2, powers):
+        for i in range(0, WIDTH * n, WIDTH):
+            put_lanes(low, k * of_power + i, zero)
     for k in range(until):
+        now = k * of_power
         for i in range(size):
             put_lanes(right, WIDTH * i, zero)
             put_lanes(right_tail, WIDTH * i, zero)
@@ -172,32 +103,13 @@ def _coefficients(form: LaneForm, space: LaneSpace, until: int) -> None:
                 put_lanes(right, WIDTH * i, lanes_at(x, WIDTH * (form.load + 2 * i)))
                 put_lanes(right_tail, WIDTH * i, lanes_at(x, WIDTH * (form.load + 2 * i + 1)))
         for p in range(form.stiff_at.shape[0]):
-            i, j = WIDTH * form.stiff_at[p, 0], k * of_path + WIDTH * form.stiff_at[p, 1]
+            i, j = WIDTH * form.stiff_at[p, 0], now + WIDTH * form.stiff_at[p, 1]
             ah, al = lanes_at(x, WIDTH * (form.stiff + 2 * p)), lanes_at(x, WIDTH * (form.stiff + 2 * p + 1))
-            _add(right, right_tail, i, -ah, -al, lanes_at(path, j), lanes_at(path_tail, j))
-        for p in range(form.damp_at.shape[0]):
-            i, j = WIDTH * form.damp_at[p, 0], (k + 1) * of_path + WIDTH * form.damp_at[p, 1]
-            ah, al = lanes_at(x, WIDTH * (form.damp + 2 * p)), lanes_at(x, WIDTH * (form.damp + 2 * p + 1))
-            ph, pl = dd_mul_d(lanes_at(path, j), lanes_at(path_tail, j), alike(k + 1.0))
-            _add(right, right_tail, i, -ah, -al, ph, pl)
+            _add(right, right_tail, i, -ah, -al, lanes_at(high, j), lanes_at(low, j))
         for p in range(form.products.shape[0]):
-            kind, row = form.products[p, 0], WIDTH * form.products[p, 1]
-            a, b = WIDTH * form.products[p, 2], WIDTH * form.products[p, 3]
-            if kind == OF_LINE:
-                sh, sl = zero, zero
-                for i in range(1, k + 1):
-                    c, d = a + of_pull * (i - 1), b + of_entries * (k - i + 1)
-                    first, first_tail = lanes_at(pull, c), lanes_at(pull_tail, c)
-                    sh, sl = gathered(sh, sl, first, first_tail, lanes_at(entries, d), lanes_at(entries_tail, d))
-                _add(right, right_tail, row, one, zero, sh, sl)
-            elif kind == OF_RATE:
-                c = a + of_entries
-                sh, sl = _sum(entries, entries_tail, rates, rates_tail, c, b, of_entries, of_path, k)
-                _add(right, right_tail, row, one, zero, sh, sl)
-            else:
-                sh, sl = _sum(path, path_tail, rates, rates_tail, a, b, of_path, of_path, k)
-                at = WIDTH * form.products[p, 4]
-                _add(right, right_tail, row, lanes_at(x, at), lanes_at(x, at + WIDTH), sh, sl)
+            row, at = WIDTH * form.products[p, 0], WIDTH * form.products[p, 3]
+            sh, sl = _sum(high, low, WIDTH * form.products[p, 1], WIDTH * form.products[p, 2], now, of_power)
+            _add(right, right_tail, row, lanes_at(x, at), lanes_at(x, at + WIDTH), sh, sl)
         for i in range(size):
             sh, sl = settled(lanes_at(right, WIDTH * i), lanes_at(right_tail, WIDTH * i))
             if i >= n:
@@ -213,55 +125,28 @@ def _coefficients(form: LaneForm, space: LaneSpace, until: int) -> None:
                 column, column_tail = lanes_at(columns, c), lanes_at(columns_tail, c)
                 sh, sl = gathered(sh, sl, column, column_tail, lanes_at(right, j), lanes_at(right_tail, j))
             sh, sl = settled(sh, sl)
+            at = now + of_power + WIDTH * (n + i)
             if i < n:
-                uh, ul = dd_mul(sh, sl, first_h, first_l)
-                qh, ql = dd_mul(uh, ul, second_h, second_l)
-                c = (k + 1) * of_path + WIDTH * i
-                put_lanes(rates, c, uh)
-                put_lanes(rates_tail, c, ul)
-                put_lanes(path, c + of_path, qh)
-                put_lanes(path_tail, c + of_path, ql)
-            else:
-                c = k * of_pull + WIDTH * (i - n)
-                put_lanes(pull, c, sh)
-                put_lanes(pull_tail, c, sl)
-        if k < last:
+                sh, sl = dd_mul(sh, sl, first_h, first_l)
+                qh, ql = dd_mul(sh, sl, second_h, second_l)
+                put_lanes(high, at + of_power - WIDTH * n, qh)
+                put_lanes(low, at + of_power - WIDTH * n, ql)
+            put_lanes(high, at, sh)
+            put_lanes(low, at, sl)
+        if k < powers - 3:
             _changes(form, space, k + 2)
     lane_coefficients(form, space, until)
-
-
-@kernel(forceinline=True)
-def _sum(
-    first: Floats,
-    first_tail: Floats,
-    second: Floats,
-    second_tail: Floats,
-    a: int,
-    b: int,
-    ahead: int,
-    behind: int,
-    k: int,
-) -> tuple[float, float]:
-    """Return the sum of products of coefficients, those in the middle first, then the newest."""
-    sh, sl = alike(0.0), alike(0.0)
-    for step in range(1, k + 2):
-        # Those of the newest coefficients, 0 and k, come last.
-        i = step if step < k else k * (step - k)
-        c, d = a + ahead * i, b + behind * (k - i)
-        left, left_tail = lanes_at(first, c), lanes_at(first_tail, c)
-        sh, sl = gathered(sh, sl, left, left_tail, lanes_at(second, d), lanes_at(second_tail, d))
-    return sh, sl
 
 
 @kernel()
 def _move(form: LaneForm, space: LaneSpace) -> None:
     """Move the states of all lanes by their steps: `motion.series_pairs._moved`."""
-    high, low, by, of_path = space.path[0], space.path[1], lanes_at(space.h, 0), WIDTH * form.n
-    q, v, last = space.q, space.v, of_path * (high.shape[0] - 1)
-    for at in range(0, of_path, WIDTH):
+    high, low, by, of_power = space.series[0], space.series[1], lanes_at(space.h, 0), WIDTH * form.series
+    q, v, last, of_tails = space.q, space.v, of_power * (space.series.shape[1] - 1), WIDTH * form.n
+    for at in range(0, of_tails, WIDTH):
         sh, sl = lanes_at(high, last + at), lanes_at(low, last + at)
         rh, rl = alike(0.0), alike(0.0)
-        for k in range(last - of_path, -of_path, -of_path):
+        for k in range(last - of_power, -of_power, -of_power):
             ph, pl = two_prod(rh, by)
             rh, e = two_sum(ph, sh)
             rl = fma(rl, by, pl + (e + sl))
@@ -271,14 +156,15 @@ def _move(form: LaneForm, space: LaneSpace) -> None:
         sh, sl = fast_two_sum(sh, sl)
         rh, rl = fast_two_sum(rh, rl)
         put_lanes(q, at, sh)
-        put_lanes(q, of_path + at, sl)
+        put_lanes(q, of_tails + at, sl)
         put_lanes(v, at, rh)
-        put_lanes(v, of_path + at, rl)
+        put_lanes(v, of_tails + at, rl)
 
 
 @kernel()
-def _inverse(form: LaneForm, space: LaneSpace) -> None:
-    """Fill in the columns of the inverses in pairs; a lane ends whose inverse in doubles does not do for that."""
+def _invert(form: LaneForm, space: LaneSpace) -> None:
+    """Fill in the entries of W and the inverses in pairs; a lane ends whose inverse in doubles does not do for that."""
+    _entries(form, space)
     n, x, a, lines = form.n, space.x, space.whole, space.lines
     size = n + form.m
     lane_inverse(form, space)
@@ -387,20 +273,10 @@ def _correct(form: LaneForm, space: LaneSpace) -> None:
 
 
 @kernel()
-def _sample(path: Floats, hh: float, hl: float, lane: int, member: int, s: int, q: Floats, v: Floats) -> None:
-    """Evaluate the series of a lane, as `motion.series_pairs.moved_pairs` does."""
-    order = path.shape[1] - 1
-    for i in range(path.shape[2]):
-        sh, sl = path[0, order, i, lane], path[1, order, i, lane]
-        rh, rl = 0.0, 0.0
-        for k in range(order - 1, -1, -1):
-            ph, pl = two_prod(rh, hh)
-            pl = fma(rl, hh, fma(rh, hl, pl + sl))
-            rh, e = two_sum(ph, sh)
-            rl = pl + e
-            ph, pl = two_prod(sh, hh)
-            pl = fma(sl, hh, fma(sh, hl, pl + path[1, k, i, lane]))
-            sh, e = two_sum(ph, path[0, k, i, lane])
-            sl = pl + e
-        q[member, s, i, 0], q[member, s, i, 1] = fast_two_sum(sh, sl)
-        v[member, s, i, 0], v[member, s, i, 1] = fast_two_sum(rh, rl)
+def _sample(path: Floats, time: float, begun: float, begun_tail: float, q: Floats, v: Floats) -> None:
+    """Evaluate the series of a lane, as `motion.series_pairs.sampled_pairs` does."""
+    hh, hl = dd_add(time, 0.0, -begun, -begun_tail)
+    moved_pairs(path.T, hh, hl, q, v)
+
+
+follow_in_pairs = following(2, _expand, _move, _invert, _correct, _sample)

@@ -21,15 +21,18 @@ class LaneForm(NamedTuple):
     ----------
     n, m : int
         Coordinates and rows.
-    mass, load, stiff, damp, gyre, lines, slopes, offset, rate, q, v : int
-        Where these begin in the numbers of a member; behind each number is its tail.
-    stiff_at, damp_at, lines_at, held, group, binds
+    mass, load, stiff, lines, slopes, offset, rate, q, v : int
+        Where these begin in the numbers of a member; behind each number is its tail. The first number is one.
+    stiff_at, lines_at, held, group
         As in `Packed`.
     varying : ndarray of int, shape (p, 4)
-        Of each slope: its entry of W, the place of this among the entries that vary, the coordinate, and whether a
-        slope before it changes the same entry.
-    products : ndarray of int, shape (p', 5)
-        Kind, row on the right-hand side, places of both factors, and of the number by which the product is multiplied.
+        Of each slope: its entry of W, the series of this, the coordinate, and whether a slope before it changes the
+        same entry.
+    products : ndarray of int, shape (p', 4)
+        Row on the right-hand side, the series of both factors, and the place of the number by which the product is
+        multiplied. Of an even number, as two are formed at a time: the last may be of no row.
+    series : int
+        How many there are: those of coordinates, rates, multipliers, and entries of W that vary.
     """
 
     n: int
@@ -37,8 +40,6 @@ class LaneForm(NamedTuple):
     mass: int
     load: int
     stiff: int
-    damp: int
-    gyre: int
     lines: int
     slopes: int
     offset: int
@@ -46,45 +47,36 @@ class LaneForm(NamedTuple):
     q: int
     v: int
     stiff_at: Integers
-    damp_at: Integers
     lines_at: Integers
     held: Integers
     group: Integers
-    binds: Integers
     varying: Integers
     products: Integers
-
-
-OF_LINE, OF_RATE, OF_TURN = 0, 1, 2
-"""Kinds of products: a multiplier with an entry of W, an entry of W with a rate, a coordinate with a rate."""
+    series: int
 
 
 def form_of(table: Packed) -> LaneForm:
-    """Return what the tables of members have in common with the table of one of them."""
+    """Return what the tables of members, of which nothing is damped, have in common with the table of one of them."""
     n, m = len(table.load), len(table.rate)
-    begins = np.cumsum([0, *(part.size for part in _parts(table))])
+    mass, load, stiff, gyre, lines, slopes, offset, rate, q = np.cumsum([part.size for part in _parts(table)]).tolist()
     varying: list[tuple[int, int, int, int]] = []
     place: dict[int, int] = {}
     for e, i in table.slopes_at.tolist():
         before = e in place
-        varying.append((e, place.setdefault(e, len(place)), i, int(before)))
+        varying.append((e, place.setdefault(e, 2 * n + m + len(place)), i, int(before)))
     products = []
     for e, (r, j) in enumerate(table.lines_at.tolist()):
         if e in place:
-            products.append((OF_LINE, j, r, place[e], 0))
-            if table.binds[e] == 1:
-                products.append((OF_RATE, n + r, place[e], j, 0))
-    turns = enumerate(table.gyre_at.tolist())
-    products += [(OF_TURN, i, j, k, int(begins[4]) + 2 * g) for g, (i, j, k) in turns]
-    mass, load, stiff, damp, gyre, lines, slopes, offset, rate, q = begins.tolist()
+            products += [(j, 2 * n + r, place[e], 0), (n + r, place[e], n + j, 0)]
+    products += [(i, j, n + k, gyre + 2 * g) for g, (i, j, k) in enumerate(table.gyre_at.tolist())]
+    if len(products) % 2:
+        products.append((n + m, 0, 0, 0))
     return LaneForm(
         n,
         m,
         mass,
         load,
         stiff,
-        damp,
-        gyre,
         lines,
         slopes,
         offset,
@@ -92,22 +84,22 @@ def form_of(table: Packed) -> LaneForm:
         q,
         q + 2 * n,
         table.stiff_at,
-        table.damp_at,
         table.lines_at,
         table.held,
         table.group,
-        table.binds,
         np.array(varying, dtype=np.int64).reshape(-1, 4),
-        np.array(products, dtype=np.int64).reshape(-1, 5),
+        np.array(products, dtype=np.int64).reshape(-1, 4),
+        2 * n + m + len(place),
     )
 
 
 def _parts(table: Packed) -> tuple[Floats, ...]:
+    one = np.array([1.0, 0.0])
     return (
+        one,
         table.mass,
         table.load,
         table.stiff,
-        table.damp,
         table.gyre,
         table.lines,
         table.slopes,

@@ -24,7 +24,7 @@ from core.compiled import fma, kernel
 from core.double_double import dd_add, dd_add_d, dd_mul, two_prod, two_sum
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
-from core.multibody.equations.packed import FORCES, Packed
+from core.multibody.equations.packed import ANGLES, FORCES, Packed
 from core.multibody.equations.saddle import Saddle, inverted, saddle_space
 from core.multibody.laws.corners import until_corner
 from core.multibody.laws.kernel import values_of_laws
@@ -41,6 +41,9 @@ GAP = 10
 """Powers of which one at least is of full size: the square of what passes through zero moves it by every third."""
 SMALLER = 2.0**10
 """How much smaller a coefficient may be than others of a series tell: those of a sine are within this."""
+
+FARTHEST = 1e150
+"""Size of coordinates and rates beyond which a motion leaves the range of doubles."""
 
 DONE, FULL, SINGULAR, LOST, STUCK, SLOWED = 0, 1, 2, 3, 4, 5
 """How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles,
@@ -100,16 +103,6 @@ def coefficients(table: Packed, space: Saddle, products: Products, since: int) -
 
 
 @kernel()
-def _largest(q: Floats, group: Integers, which: int, power: int) -> float:
-    """Return the largest coefficient of a power in one group."""
-    largest = 0.0
-    for i in range(q.shape[0]):
-        if group[i] == which:
-            largest = max(largest, abs(q[i, power]))
-    return largest
-
-
-@kernel()
 def lowest_bound(gaps: int, order: int) -> int:
     """Return the lowest power by which a step is bounded: some formulas leave gaps between the powers.
 
@@ -122,43 +115,68 @@ def lowest_bound(gaps: int, order: int) -> int:
 def step_size(q: Floats, group: Integers, tolerance: float, lowest: int) -> float:
     """Return the step at which the last terms of the series are `tolerance` of what they are added to.
 
+    Parameters
+    ----------
+    q : (n, order + 1)
+    group : (n,)
+        Coordinates of one group are measured by the largest of them.
+    lowest : int
+        As `least_step` takes it.
+    """
+    order = q.shape[1] - 1
+    sizes = np.zeros((FORCES + 1, order + 1))
+    for i in range(q.shape[0]):
+        if group[i] <= FORCES:
+            for k in range(order + 1):
+                sizes[group[i], k] = max(sizes[group[i], k], abs(q[i, k]))
+    best = np.inf
+    for g in range(FORCES + 1):
+        best = least_step(sizes[g], g, tolerance, lowest, best)
+    return math.exp(best)
+
+
+@kernel()
+def least_step(sizes: Floats, group: int, tolerance: float, lowest: int, best: float) -> float:
+    """Return the lesser of the logarithm of a step and of that which the coefficients of a group allow.
+
     Where the last two coefficients vanish, the highest one that does not tells the radius of convergence, down to the
     power `lowest`: what is left out begins beyond the order all the same. Where powers may be missing, the last two may
     be there by rounding alone, and some before them bound the step, too.
+
+    Parameters
+    ----------
+    sizes : (order + 1,)
+        The largest coefficient of each power.
     """
-    order = q.shape[1] - 1
-    best = np.inf
-    for g in range(FORCES + 1):
-        last, before = _largest(q, group, g, order), _largest(q, group, g, order - 1)
-        top = order
-        while last == 0.0 and before == 0.0 and top > lowest:
+    order = sizes.shape[0] - 1
+    top = order
+    if sizes[order - 1] == 0.0:
+        while sizes[top] == 0.0 and top > lowest:
             top -= 1
-            last = _largest(q, group, g, top)
-        # The logarithms of sizes and scales; that of zero is minus infinity.
-        nearest = 0.0 if g == 2 else math.log(_largest(q, group, g, 0))
-        rate, gain = math.log(_largest(q, group, g, 1)), math.log(_largest(q, group, g, 2))
-        for back in range(max(GAP, 2) if lowest < order else 2):
-            power = top if back == 0 else order - back
-            number = last if back == 0 else before if back == 1 else _largest(q, group, g, power)
-            if number > 0.0 and power > 2:
-                size = math.log(number)
-                # What starts at zero is measured by how far it comes within the radius of convergence.
-                scale = max(nearest, gain + 2.0 * (gain - size) / (power - 2))
-                scale = max(scale, rate + (rate - size) / (power - 1))
-                beyond = order if power < order - 1 else power
-                step = (scale - size) / power + math.log(tolerance) / beyond
-                for k in range(3, power):
-                    if k > EARLY and step > -np.inf:
-                        break
-                    moved = math.log(_largest(q, group, g, k))
-                    step = max(step, (moved - size) / (power - k) + math.log(tolerance) / (beyond - k))
-                if back > 1:
-                    # Powers that follow are usually smaller than those before tell.
-                    step += math.log(SMALLER) / power
-                # What has no other coefficient moves by rounding alone, or is a polynomial.
-                if step > -np.inf:
-                    best = min(best, step)
-    return math.exp(best)
+    share = math.log(tolerance)
+    # The logarithms of sizes and scales; that of zero is minus infinity.
+    nearest = 0.0 if group == ANGLES else math.log(sizes[0])
+    rate, gain = math.log(sizes[1]), math.log(sizes[2])
+    for back in range(max(GAP, 2) if lowest < order else 2):
+        power = top if back == 0 else order - back
+        if sizes[power] > 0.0 and power > 2:
+            size = math.log(sizes[power])
+            # What starts at zero is measured by how far it comes within the radius of convergence.
+            scale = max(nearest, gain + 2.0 * (gain - size) / (power - 2))
+            scale = max(scale, rate + (rate - size) / (power - 1))
+            beyond = order if power < order - 1 else power
+            step = (scale - size) / power + share / beyond
+            for k in range(3, power):
+                if k > EARLY and step > -np.inf:
+                    break
+                step = max(step, (math.log(sizes[k]) - size) / (power - k) + share / (beyond - k))
+            if back > 1:
+                # Powers that follow are usually smaller than those before tell.
+                step += math.log(SMALLER) / power
+            # What has no other coefficient moves by rounding alone, or is a polynomial.
+            if step > -np.inf:
+                best = min(best, step)
+    return best
 
 
 @kernel()
@@ -299,7 +317,7 @@ def advance(
             ph, pl = two_prod(2.0 * c[i, 2], h)
             v[i, 0], v[i, 1] = dd_add(v[i, 0], v[i, 1], ph, pl + changes[1, i])
             place[i] = q[i, 0]
-            if not (abs(q[i, 0]) < 1e150 and abs(v[i, 0]) < 1e150):
+            if not (abs(q[i, 0]) < FARTHEST and abs(v[i, 0]) < FARTHEST):
                 formed = math.isfinite(q[i, 0]) and math.isfinite(v[i, 0])
                 return (LOST if formed or table.laws.operations.shape[0] == 0 else SINGULAR), step
         entries_of_lines(table, place, lines)
@@ -315,21 +333,25 @@ def advance(
     return FULL, series.shape[0]
 
 
+@kernel(forceinline=True)
+def moved_by(c: Floats, h: float, q: Floats, v: Floats) -> None:
+    """Evaluate a series c of shape (n, order + 1) a time later, into q and v of shape (n,)."""
+    for i in range(c.shape[0]):
+        moved, rate = 0.0, 0.0
+        for k in range(c.shape[1] - 1, 0, -1):
+            moved = (moved + c[i, k]) * h
+        for k in range(c.shape[1] - 1, 1, -1):
+            rate = (rate + k * c[i, k]) * h
+        q[i] = c[i, 0] + moved
+        v[i] = c[i, 1] + rate
+
+
 @kernel()
 def sampled(starts: Floats, series: Floats, times: Floats, which: Integers, q: Floats, v: Floats) -> None:
     """Evaluate the series of the steps `which` at the times, into q and v of shape (t, n)."""
-    n, order = series.shape[1], series.shape[2] - 1
     for s in range(times.shape[0]):
         h = (times[s] - starts[which[s], 0]) - starts[which[s], 1]
-        c = series[which[s]]
-        for i in range(n):
-            moved, rate = 0.0, 0.0
-            for k in range(order, 0, -1):
-                moved = (moved + c[i, k]) * h
-            for k in range(order, 1, -1):
-                rate = (rate + k * c[i, k]) * h
-            q[s, i] = c[i, 0] + moved
-            v[s, i] = c[i, 1] + rate
+        moved_by(series[which[s]], h, q[s], v[s])
 
 
 @kernel()

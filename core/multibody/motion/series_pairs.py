@@ -25,6 +25,7 @@ from core.multibody.laws.kernel import PackedLaws, values_of_laws
 from core.multibody.motion.products import ROW, Products, products_of, spread_pairs, started, summed_pairs
 from core.multibody.motion.series import (
     DONE,
+    FARTHEST,
     FULL,
     LOST,
     SHORTEST,
@@ -251,6 +252,15 @@ def moved_pairs(c: Floats, hh: float, hl: float, q: Floats, v: Floats) -> None:
 
 
 @kernel()
+def paired_coefficients(order: int, tolerance: float) -> int:
+    """Return up to which order coefficients are formed in pairs.
+
+    Coefficient k is to about tolerance^(k / order) of the first ones: doubles do for those of the last digits.
+    """
+    return min(max(int(order * (1.0 + LAST_DIGITS / math.log2(tolerance))), 1), order - 1)
+
+
+@kernel()
 def advance_pairs(
     table: Packed,
     q: Floats,
@@ -277,9 +287,7 @@ def advance_pairs(
     space, products = saddle_space(table, 2), products_of(table, order, 2)
     path, size = products.path, products.right.shape[1]
     moved = np.empty((2, 2, size))
-    # Coefficient k is to about tolerance^(k / order) of the first ones: doubles do for those of the last digits.
-    bits = -math.log2(tolerance)
-    paired = min(max(int(order * (1.0 - LAST_DIGITS / bits)), 1), order - 1)
+    paired = paired_coefficients(order, tolerance)
     nothing_known = np.zeros((2, 0))
     moving = np.empty((2, n))
     at_state(table, q, v, moving, lines)
@@ -325,7 +333,7 @@ def advance_pairs(
         for i in range(n):
             q[i, 0], q[i, 1] = moved[0, 0, i], moved[0, 1, i]
             v[i, 0], v[i, 1] = moved[1, 0, i], moved[1, 1, i]
-            if not (abs(q[i, 0]) < 1e150 and abs(v[i, 0]) < 1e150):
+            if not (abs(q[i, 0]) < FARTHEST and abs(v[i, 0]) < FARTHEST):
                 formed = math.isfinite(q[i, 0]) and math.isfinite(v[i, 0])
                 return (LOST if formed or table.laws.operations.shape[0] == 0 else SINGULAR), step
         at_state(table, q, v, moving, lines)
