@@ -357,8 +357,8 @@ TESTED_IN |= {
         ),
         "trajectory/test_columns": "trajectory/column_errors",
         "members/test_follow": (
-            "members/lane_doubles members/lane_pairs members/lane_space members/lane_table members/many "
-            "members/member_columns members/plan"
+            "members/lane_doubles members/lane_pairs members/lane_series members/lane_space members/lane_table "
+            "members/many members/member_columns members/plan"
         ),
         "members/test_recorded_balls": "algebra/square_systems",
         "language/test_scene": (
