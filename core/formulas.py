@@ -29,6 +29,8 @@ LARGEST_EXPONENT = 400
 """Of ten, in a number."""
 READ = 1024
 """Texts whose names are remembered: those of a request are looked at several times, in some 0.5 MB."""
+PARSED = 256
+"""Formulas that are remembered: set-up and audit read those of a scene again. The longest take 10 MB."""
 
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "abs")
 ARGUMENTS = {"atan2": 2, "min": 2, "max": 2, "sign": 1, "if": 3}
@@ -164,15 +166,20 @@ class Formula:
         """
         if len(text) > LONGEST_FORMULA:
             raise InvalidParameter((), f"have at most {LONGEST_FORMULA} characters, not {len(text)}")
-        reader = _Reader(_tokens(text, known), known, functions)
-        root = reader.sum()
-        if reader.at != len(reader.tokens):
-            raise reader.left_over()
-        return cls(root, frozenset(reader.names))
+        return _parsed(text, tuple(known), tuple(functions))
 
     def value(self, names: Mapping[str, T], arithmetic: Arithmetic[T]) -> T:
         """Return the value with some values of its names; errors are those of the arithmetic."""
         return value_of(self.root, names, arithmetic)
+
+
+@lru_cache(maxsize=PARSED)
+def _parsed(text: str, known: Collection[str], functions: Collection[str]) -> Formula:
+    reader = _Reader(_tokens(text, known), known, functions)
+    root = reader.sum()
+    if reader.at != len(reader.tokens):
+        raise reader.left_over()
+    return Formula(root, frozenset(reader.names))
 
 
 def value_of(node: Node, names: Mapping[str, T], arithmetic: Arithmetic[T]) -> T:

@@ -126,3 +126,10 @@ def test_both_arithmetics_have_every_function(name: str, at: str) -> None:
         expected = function(mpmath.mpf(at)) - 1 / (8 * mpmath.pi)
         assert abs(formula.value({}, BALLS) - arb(mpmath.nstr(expected, 55))) < 1e-50
     assert formula.value({}, DOUBLES) == pytest.approx(float(expected), rel=1e-14)
+
+
+def test_a_formula_that_was_read_is_refused_where_its_names_are_not_known() -> None:
+    assert Formula.read("2*a", ["a"]).names == {"a"}
+    with pytest.raises(UnknownName):
+        Formula.read("2*a", ["b"])
+    assert Formula.read("2*a", ["a"], ("sin",)) == Formula.read("2*a", ["a"])

@@ -68,7 +68,7 @@ class Description:
     @cached_property
     def places(self) -> float:
         """Largest component of a place of a body at the start (m)."""
-        return max(float(np.abs(body.start.position).max()) for body in self.bodies.values())
+        return max(float(np.abs(pose.position).max()) for pose in self.start.values())
 
     @cached_property
     def extent(self) -> float:

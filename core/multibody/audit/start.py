@@ -33,26 +33,28 @@ def check_places(ledger: Ledger, description: Description, start: Samples) -> No
     Parameters
     ----------
     start : Samples
-        One sample of the motion, at the start.
+        At the start: one sample of the motion, or one of each motion of which the description has the places.
     """
     # A body in the origin is moved by as much as its axes turn the arms of its connections.
     size, known = description.extent, ledger.rounding
     for name, body in description.bodies.items():
-        pose, error = start.placement[name], start.errors[name][0]
-        off = np.abs(pose.position[0] - body.start.position).max(keepdims=True)
-        ledger.compare("place at the start", name, start.times, off, known * size + error[POSITION])
-        if pose.turn is not None and body.start.turn is not None:
-            off = pose.turn - body.start.turn
-            ledger.compare("angle at the start", name, start.times, off, known * (1.0 + abs(off)) + error[ATTITUDE])
-        elif pose.rotation is not None and body.start.rotation is not None:
+        pose, given, error = start.placement[name], description.start[name], start.errors[name]
+        off = np.abs(pose.position - given.position).max(axis=-1)
+        ledger.compare("place at the start", name, start.times, off, known * size + error[:, POSITION])
+        if pose.turn is not None and given.turn is not None:
+            off = np.abs(pose.turn - given.turn)
+            ledger.compare("angle at the start", name, start.times, off, known * (1.0 + off) + error[:, ATTITUDE])
+        elif pose.rotation is not None and given.rotation is not None:
             # Of a top the axis alone is answered, and of a ball no attitude.
             shown = slice(None) if start.spun(name) else axis_of_top(body, description)
-            off = np.abs(pose.rotation[0][:, shown] - body.start.rotation[:, shown]).max(keepdims=True).reshape(1)
+            off = (
+                np.abs(pose.rotation[..., shown] - given.rotation[..., shown]).reshape(len(start.times), -1).max(axis=1)
+            )
             # Axes that were written with a few digits are no unit vectors; those of the answer are.
-            given = body.start.rotation
-            known_axes = known + 4.0 * float(np.abs(given.T @ given - np.eye(3)).max())
+            square = np.swapaxes(given.rotation, -1, -2) @ given.rotation
+            known_axes = known + 4.0 * float(np.abs(square - np.eye(3)).max())
             if name in start.placed:
-                ledger.compare("attitude at the start", name, start.times, off, known_axes + error[ATTITUDE])
+                ledger.compare("attitude at the start", name, start.times, off, known_axes + error[:, ATTITUDE])
 
 
 def accelerations_of(description: Description, answer: SceneSolution) -> dict[str, Acceleration] | None:

@@ -16,7 +16,7 @@ from core.multibody.members.lane_doubles import follow_in_doubles
 from core.multibody.members.lane_motion import Follow
 from core.multibody.members.lane_pairs import follow_in_pairs
 from core.multibody.members.lane_table import LaneForm
-from core.multibody.members.member_audit import MemberWindows, windows_of
+from core.multibody.members.member_audit import TIMES, MemberWindows, windows_of
 from core.multibody.members.member_columns import (
     MemberColumn,
     MemberStates,
@@ -49,6 +49,9 @@ from core.multibody.trajectory.column_errors import FINEST, PLACES_BETWEEN
 SMALLEST = 1e-250
 """Numbers below which scaling by powers of two might lose digits."""
 
+TIMES_BESIDE = len(PLACES_BETWEEN) + TIMES
+"""Times at which a member is followed beside those of its question: those of natural sizes and of the audit."""
+
 NOTHING_LEFT = 1e-9
 """Angle (rad) from half a turn within which the turns of a direction are counted by itself."""
 
@@ -71,10 +74,6 @@ class Followed:
         At the times of the audit.
     windows : MemberWindows
         These times.
-    written : ndarray, shape (members, k)
-        The places of bodies as they are written, each with its angle where it has one.
-    states_alone : ndarray of bool, shape (members,)
-        Whether places, attitudes and velocities alone differ from those of other such members.
     """
 
     members: Integers
@@ -83,8 +82,6 @@ class Followed:
     error: Floats
     checked: dict[str, MemberColumn]
     windows: MemberWindows
-    written: Floats
-    states_alone: Integers
 
     def of(self, members: Integers) -> Followed:
         """Return those of some members, by a mask."""
@@ -95,8 +92,6 @@ class Followed:
             self.error[members],
             {name: column.of(members) for name, column in self.checked.items()},
             self.windows.at(members),
-            self.written[members],
-            self.states_alone[members],
         )
 
 
@@ -143,7 +138,7 @@ class _Tables:
     Attributes
     ----------
     members : ndarray of int
-    rows, slopes, offsets, starts, written : ndarray
+    rows, slopes, offsets, starts : ndarray
         By `plan.Setup`.
     ups : ndarray, shape (members, n)
         What coordinates of the arrays are multiplied by.
@@ -154,7 +149,6 @@ class _Tables:
         Those of the question, those that tell natural sizes, those of the windows (s).
     seen : ndarray
         As `lane_motion.following` tells.
-    states_alone : ndarray of bool
     """
 
     members: Integers
@@ -162,13 +156,11 @@ class _Tables:
     slopes: Floats
     offsets: Floats
     starts: Floats
-    written: Floats
     ups: Floats
     clock: Floats
     windows: MemberWindows
     times: Floats
     seen: Floats
-    states_alone: Integers
 
     def at(self, members: Integers) -> _Tables:
         """Return those of some members."""
@@ -178,13 +170,11 @@ class _Tables:
             self.slopes[members],
             self.offsets[members],
             self.starts[members],
-            self.written[members],
             self.ups[members],
             self.clock[members],
             self.windows.at(members),
             self.times[members],
             self.seen[members],
-            self.states_alone[members],
         )
 
 
@@ -242,7 +232,7 @@ def _of_group(group: _Group, numbers: Floats, times: Floats, accuracy: float) ->
 def _tables(group: _Group, numbers: Floats, times: Floats) -> _Tables:
     """Return the tables of the members of a group."""
     count = len(group.members)
-    rows, slopes, offsets, starts, written = _filled(group)
+    rows, slopes, offsets, starts = _filled(group)
     ups = np.array([setup.units.up for setup in group.setups])
     clock = np.array([two_to(setup.units.time) for setup in group.setups])
     last = float(times.max())
@@ -255,9 +245,8 @@ def _tables(group: _Group, numbers: Floats, times: Floats) -> _Tables:
         own = np.concatenate([slopes[..., 0] * ups[:, None], offsets[..., :1]], axis=2)[:, list(direction)]
         c, s = starts[:, d, 0, 0, None], starts[:, d, 1, 0, None]
         seen[:, d, 0], seen[:, d, 1] = c * own[:, 0] + s * own[:, 1], c * own[:, 1] - s * own[:, 0]
-    alone = np.array([setup.states_alone for setup in group.setups])
     members = np.array(group.members)
-    return _Tables(members, rows, slopes, offsets, starts, written, ups, clock, windows, every, seen, alone)
+    return _Tables(members, rows, slopes, offsets, starts, ups, clock, windows, every, seen)
 
 
 def _directions(frames: Mapping[str, Frame]) -> list[tuple[int, int]]:
@@ -265,9 +254,9 @@ def _directions(frames: Mapping[str, Frame]) -> list[tuple[int, int]]:
     return [one.direction for one in frames.values() if one.turn is None and one.direction is not None]
 
 
-def _filled(group: _Group) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+def _filled(group: _Group) -> tuple[Floats, Floats, Floats, Floats]:
     """Return the numbers of the tables of all members, their slopes and offsets, and the starts of directions."""
-    names = ("numbers", "slopes", "offsets", "starts", "written")
+    names = ("numbers", "slopes", "offsets", "starts")
     found = [np.empty((len(group.members), *getattr(group.setups[0], name).values.shape)) for name in names]
     for setup in {id(one): one for one in group.setups}.values():
         own = np.array([one is setup for one in group.setups])
@@ -275,7 +264,7 @@ def _filled(group: _Group) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         outputs = np.array([group.outputs[k] for k in np.flatnonzero(own).tolist()])
         for array, name in zip(found, names, strict=True):
             array[own] = getattr(setup, name).filled(outputs)
-    return found[0], found[1], found[2], found[3], found[4]
+    return found[0], found[1], found[2], found[3]
 
 
 def _scaled(tables: _Tables) -> tuple[Floats, Floats, Integers]:
@@ -348,8 +337,7 @@ def _columns(
     for column in (*columns.values(), *checked.values()):
         finite = np.isfinite(column.values).reshape(len(values), -1).all(axis=1)
         known = known & finite & np.isfinite(column.error)
-    error, rest = worst(columns, scales), (tables.windows, tables.written[..., 0], tables.states_alone)
-    return Followed(tables.members, columns, scales, error, checked, *rest), known
+    return Followed(tables.members, columns, scales, worst(columns, scales), checked, tables.windows), known
 
 
 def _countable(states: MemberStates, directions: Sequence[tuple[int, int]], starts: Floats) -> Integers:

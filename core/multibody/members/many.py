@@ -14,8 +14,8 @@ from core.multibody.algebra.polynomials import BITS
 from core.multibody.audit.definitions import description_of
 from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
-from core.multibody.members.follow import Followed, followed
-from core.multibody.members.member_audit import TOGETHER, keep_the_laws
+from core.multibody.members.follow import TIMES_BESIDE, Followed, followed
+from core.multibody.members.member_audit import TOGETHER, keep_the_laws, sets_of
 from core.multibody.members.plan import Plans
 
 
@@ -39,9 +39,6 @@ class AnsweredTogether:
 
 MOST_SAMPLES = 2**16
 """Samples of members that are followed at a time, so that their arrays stay within some tens of megabytes."""
-
-ROWS_BESIDE = 32
-"""Samples of a member beside those of its question, for natural sizes and for the audit."""
 
 
 class ManyScenes:
@@ -86,7 +83,7 @@ class ManyScenes:
         accuracy : float
             Largest error of any column, relative to the largest value in columns of its unit, that is tolerated.
         """
-        count = max(TOGETHER, MOST_SAMPLES // (len(times) + ROWS_BESIDE))
+        count = max(TOGETHER, MOST_SAMPLES // (len(times) + TIMES_BESIDE))
         for k in range(0, len(numbers), count):
             some = numbers[k : k + count]
             with precision(BITS):
@@ -99,20 +96,10 @@ class ManyScenes:
 
 def _audited(found: Followed, numbers: Floats, scene_of: Callable[[Sequence[float]], Scene]) -> Integers:
     """Return the rows of the members that keep all laws."""
-    kept = []
-    for rows in _sets(found):
-        description = description_of(scene_of(numbers[found.members[rows[0]]].tolist()))
+    kept = [np.zeros(0, dtype=np.int64)]
+    descriptions = [description_of(scene_of(row)) for row in numbers[found.members].tolist()]
+    for rows, description in sets_of(descriptions, found.error):
         checked = {name: column.of(rows) for name, column in found.checked.items()}
-        if keep_the_laws(description, checked, found.windows.at(rows), found.written[rows]):
+        if keep_the_laws(description, checked, found.windows.at(rows)):
             kept.append(rows)
-    return np.sort(np.concatenate(kept)) if kept else np.zeros(0, dtype=np.int64)
-
-
-def _sets(found: Followed) -> Iterator[Integers]:
-    """Yield rows of members that may be audited together, of like errors."""
-    order = np.argsort(found.error, kind="stable")
-    alike = order[found.states_alone[order]]
-    for k in range(0, len(alike), TOGETHER):
-        yield alike[k : k + TOGETHER]
-    for row in order[~found.states_alone[order]]:
-        yield np.array([row])
+    return np.sort(np.concatenate(kept))

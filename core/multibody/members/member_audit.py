@@ -1,14 +1,15 @@
 """The audit of many members at once: their samples are rows of one set, held against the description.
 
 What connections hold, kinematics, the equations of motion in windows, energy and the start are looked at for every
-member, with the definitions that `audit.audit` uses for one. Members whose description differs in more than the state
-at the start are no rows of one set, and are looked at one by one. A set in which anything fails is answered one by one.
+member, with the definitions that `audit.audit` uses for one. Every member is described by itself. Rows of one set are
+those whose descriptions say the same of all but the places of bodies at the start. A set in which anything fails is
+answered one by one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, is_dataclass, replace
 
 import numpy as np
 
@@ -19,9 +20,10 @@ from core.multibody.audit.energy import kinetic, potential, size_of
 from core.multibody.audit.failure import ROUNDING, Ledger, propagated
 from core.multibody.audit.laws_at_samples import Sizes, check_samples, measured
 from core.multibody.audit.newton import Freedoms
-from core.multibody.audit.placement import LARGEST, Twist, moved
+from core.multibody.audit.placement import LARGEST, Pose, Twist, moved
 from core.multibody.audit.samples import Part, Samples, samples_of
-from core.multibody.audit.windows import GRID, check_windows, nodes
+from core.multibody.audit.start import check_places
+from core.multibody.audit.windows import GRID, NODES, check_windows, nodes
 from core.multibody.members.member_columns import MemberColumn
 from core.systems.trajectory import Column
 
@@ -31,8 +33,15 @@ WINDOWS = 2
 SHARE = 2.0**-5
 """Half the width of a window in the unit of time of a table, in which its motion turns by some radians."""
 
+TIMES = 1 + WINDOWS * NODES
+"""Times at which a member is audited: the start, and those of windows."""
+
 TOGETHER = 64
 """Members in one set, those of like errors: the largest error of a set is allowed for each."""
+
+
+NOWHERE = Pose(np.zeros(0))
+"""Where a body begins of which that is not said."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +50,7 @@ class MemberWindows:
 
     Attributes
     ----------
-    times : ndarray, shape (members, 1 + windows * nodes)
+    times : ndarray, shape (members, TIMES)
     halves : ndarray, shape (members, windows)
     """
 
@@ -88,19 +97,63 @@ def _draws(numbers: Floats) -> Floats:
     return found
 
 
-def keep_the_laws(
-    description: Description, columns: Mapping[str, MemberColumn], windows: MemberWindows, written: Floats
-) -> bool:
-    """Return whether members of one description, their states at the start apart, keep all laws that are checked.
+def sets_of(descriptions: Sequence[Description], error: Floats) -> Iterator[tuple[Integers, Description]]:
+    """Yield rows of members that are audited together, of like errors, and a description in which all begin.
+
+    Those are left out whose numbers are too large or small for an audit.
+    """
+    alike: dict[Hashable, list[int]] = {}
+    for row in np.argsort(error, kind="stable").tolist():
+        if descriptions[row].moderate:
+            alike.setdefault(_content(_anywhere(descriptions[row])), []).append(row)
+    for rows in alike.values():
+        for k in range(0, len(rows), TOGETHER):
+            some = rows[k : k + TOGETHER]
+            starts = [descriptions[row].start for row in some]
+            start = {name: _stacked([one[name] for one in starts]) for name in starts[0]}
+            yield np.array(some), replace(_anywhere(descriptions[some[0]]), start=start)
+
+
+def _anywhere(description: Description) -> Description:
+    """Return a description that does not say where bodies begin, nor how fast."""
+    bodies = {
+        name: replace(body, start=NOWHERE, velocity=None, angular_velocity=None)
+        for name, body in description.bodies.items()
+    }
+    return replace(description, bodies=bodies, start={})
+
+
+def _stacked(poses: Sequence[Pose]) -> Pose:
+    """Return poses of one body as samples of one."""
+    return Pose(*(None if parts[0] is None else np.stack(parts) for parts in zip(*poses, strict=True)))  # type: ignore[arg-type]
+
+
+def _content(value: object) -> Hashable:
+    """Return what tells values apart: the contents of dataclasses and arrays; of anything else unknown, which it is."""
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    if isinstance(value, Mapping):
+        return tuple((key, _content(one)) for key, one in value.items())
+    if isinstance(value, tuple):
+        return type(value), *map(_content, value)
+    if is_dataclass(value):
+        return type(value), *(_content(getattr(value, name)) for name in value.__dataclass_fields__)
+    return id(value)
+
+
+def keep_the_laws(description: Description, columns: Mapping[str, MemberColumn], windows: MemberWindows) -> bool:
+    """Return whether members of one description keep all laws that are checked.
 
     Parameters
     ----------
+    description : Description
+        By `sets_of`.
     columns : mapping of str to MemberColumn
         At the times of the windows.
-    written : ndarray, shape (members, k)
-        Places of bodies and angles as they are written.
     """
-    if not description.moderate or any(one.mass or one.opens for one in description.connections):
+    if any(one.mass or one.opens for one in description.connections):
         # What needs forces, or is not audited at all, is answered by itself.
         return False
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -112,7 +165,7 @@ def keep_the_laws(
         ahead = moved(samples.placement, samples.motion, in_time=True)
         check_samples(ledger, measured(description, ahead), samples, {}, sizes)
         starts = np.arange(0, len(samples.times), count)
-        _check_starts(ledger, description, samples.at(starts), written)
+        check_places(ledger, description, samples.at(starts))
         inner = np.setdiff1d(np.arange(len(samples.times)), starts)
         freedoms, some = Freedoms(description), samples.at(inner)
         placed = {name: pose.at(inner) for name, pose in ahead.items()}
@@ -138,21 +191,6 @@ def _part(columns: Mapping[str, MemberColumn], windows: MemberWindows) -> Part:
         for name, column in columns.items()
     }
     return Part(windows.times.ravel(), shared, slice(None))
-
-
-def _check_starts(ledger: Ledger, description: Description, starts: Samples, written: Floats) -> None:
-    """Require bodies to begin where they are written, as `audit.start.check_places` does."""
-    size, known, k = description.extent, ledger.rounding, 0
-    for name, body in description.bodies.items():
-        pose, (away, tilt, *_) = starts.placement[name], starts.errors[name][0].tolist()
-        d = pose.position.shape[1]
-        off = np.abs(pose.position - written[:, k : k + d]).max(axis=1)
-        ledger.compare("place at the start", name, starts.times, off, known * size + away)
-        k += d
-        if body.inertia is not None and pose.turn is not None:
-            off = np.abs(pose.turn - written[:, k])
-            ledger.compare("angle at the start", name, starts.times, off, known * (1.0 + off) + tilt)
-            k += 1
 
 
 def _check_energy(ledger: Ledger, description: Description, samples: Samples, count: int) -> None:

@@ -13,10 +13,10 @@ from core.arrays import Floats, Integers
 from core.errors import MechanicsError, Path
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Units, pair, state
-from core.multibody.language.numerals import OF_STATE, Numerals
+from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.members.lane_table import LaneForm, form_of, numbers_of
-from core.multibody.members.recorded_balls import CODE, NotRecorded, Record, RecordedBall
+from core.multibody.members.recorded_balls import CODE, NotRecorded, Record
 from core.multibody.motion.modelling import Modelled, modelled
 from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.smooth_motion import smooth_motion
@@ -99,10 +99,6 @@ class Setup:
         The coordinates as described in those of the reduced table, as pairs.
     starts : Template
         Of every body with a direction: the start of its two components, and its angle.
-    written : Template
-        Of every body the components of its place as they are written, and of those with a direction the angle.
-    states_alone : bool
-        Whether members differ in places, attitudes and velocities of bodies alone.
     """
 
     form: LaneForm
@@ -111,8 +107,6 @@ class Setup:
     slopes: Template
     offsets: Template
     starts: Template
-    written: Template
-    states_alone: bool
 
 
 @dataclass
@@ -188,7 +182,7 @@ class Plans:
         # Forces at the start are decided, too.
         ends = smooth_motion(model, np.zeros(0)).events
         record.complete = True
-        setup = _setup_of(model, numerals, record)
+        setup = _setup_of(model, record)
         if ends:
             raise NotRecorded("a motion that ends at the start")
         same = next((plan for plan in self.known if plan.record.alike(record)), None)
@@ -199,7 +193,7 @@ class Plans:
         same.setups[record.outcomes] = setup
 
 
-def _setup_of(model: Modelled, numerals: Numerals, record: Record) -> Setup:
+def _setup_of(model: Modelled, record: Record) -> Setup:
     """Return the tables of a model, whose motion has to be a Taylor series that nothing ends and no row follows."""
     whole, measures = model.whole, model.described.measures
     if len(whole.parts) != 1 or whole.dropped or measures.limits:
@@ -218,14 +212,9 @@ def _setup_of(model: Modelled, numerals: Numerals, record: Record) -> Setup:
     if list(whole.parts[0][0]) != list(range(len(table.names))):
         raise NotRecorded("coordinates in another order")
     starts: list[list[tuple[float, float]]] = []
-    written: list[tuple[float, float]] = []
     for name, frame in coordinates.frames.items():
         if frame.axes is not None:
             raise NotRecorded("attitudes in space")
-        place = numerals.vector(model.described.scene.bodies[name].at, ("bodies", name, "at"), coordinates.dimension)
-        written.extend(pair(x, 0) for x in place)
-        if frame.direction is not None:
-            written.append(pair(coordinates.start_angle(name), 0))
         if frame.turn is None and frame.direction is not None:
             own = [measures.table.q[i] for i in frame.direction]
             starts.append([pair(x, 0) for x in (*own, coordinates.start_angle(name))])
@@ -238,11 +227,4 @@ def _setup_of(model: Modelled, numerals: Numerals, record: Record) -> Setup:
         Template.of(slopes, record),
         Template.of(offsets, record),
         Template.of(np.array(starts, dtype=np.float64).reshape(-1, 3, 2), record),
-        Template.of(np.array(written, dtype=np.float64), record),
-        all(_is_of_state(path) for path, x in numerals.every.items() if isinstance(x, RecordedBall)),
     )
-
-
-def _is_of_state(path: Path) -> bool:
-    """Return whether a number says where a body is or how it moves, or has a name alone."""
-    return path[0] == "let" or (path[0] == "bodies" and path[2] in OF_STATE)
