@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from core.assessment.formulas import Undefined, value_in_doubles
 from core.balls import precision
 from core.errors import InvalidParameter
-from core.formulas import DEEPEST, FUNCTIONS, LONGEST_FORMULA, Formula
+from core.formulas import DEEPEST, FUNCTIONS, LONGEST_FORMULA, Formula, UnknownName
 from core.formulas_in_doubles import DOUBLES
 from core.multibody.language.numerals import BALLS
 
