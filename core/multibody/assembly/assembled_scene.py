@@ -20,7 +20,6 @@ from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly, evaluated, is_zero, size
 from core.multibody.assembly.described_bodies import (
     BITS_OF_RATES,
-    axis_after,
     moving_body,
     placed_body,
     rounded,
@@ -42,6 +41,7 @@ from core.multibody.language.scene import Scene
 from core.multibody.model_answer import AssembledBody, Assembly
 from core.multibody.table.description import Described, described
 from core.multibody.table.facing import facing
+from core.multibody.table.frames import axis_after
 from core.near_names import near_and_all
 from core.work import spend
 

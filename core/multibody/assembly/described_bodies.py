@@ -93,18 +93,13 @@ def moving_body(body: SceneBody, frame: Frame, table: Table, rates: Sequence[Bal
         if not _equal([numerals.number(given, (*path, "angular_velocity"))], [rate]):
             body = replace(body, angular_velocity=_significant(rate))
         return body
+    if frame.axes is None and frame.turns is None:
+        # Nothing sees how a ball is turned: it keeps the angular velocity that it has.
+        return body
     assert not isinstance(given, (int, float, str)), "an angular velocity in space is a vector"
     written = numerals.vector(given, (*path, "angular_velocity"), 3)
     found = _angular_velocity(frame, table, rates)
     return replace(body, angular_velocity=_other_vector(given, written, found))  # type: ignore[arg-type]
-
-
-def axis_after(axis: Sequence[Ball], frame: Frame | None, before: Sequence[Ball], after: Sequence[Ball]) -> list[Ball]:
-    """Return where a vector of space goes that is fixed in a body; None is the ground."""
-    if frame is None or frame.axes is None:
-        return list(axis)
-    inside = [sum((before[i] * x for i, x in zip(own, axis, strict=True)), ZERO) for own in frame.axes]
-    return [sum((x * after[own[k]] for x, own in zip(inside, frame.axes, strict=True)), ZERO) for k in range(3)]
 
 
 def rounded(ball: Ball, extent: float, kept: int = DIGITS) -> Number:
@@ -158,7 +153,7 @@ def _angular_velocity(frame: Frame, table: Table, rates: Sequence[Ball]) -> list
     """Return the angular velocity in body axes: half the sum of e x e' is that in space."""
     q = table.q
     if frame.axes is None:
-        assert frame.turns is not None, "a body without axes is a ball"
+        assert frame.turns is not None, "a body without axes rolls"
         assert frame.start_axes is not None, "a ball has axes at the start"
         return [sum((rates[j] * x for j, x in zip(frame.turns, own, strict=True)), ZERO) for own in frame.start_axes]
     space = []

@@ -282,8 +282,7 @@ class _Audit:
         if not (self.own and begin > 0.0 and self.end > begin) or found is None:
             return None
         columns = sampler(np.array([begin]), False)
-        places = {name: Pose(columns[f"{name}.position"].values) for name in self.description.bodies}
-        quick = quickness(self.description, places, *largest_rates(columns))
+        quick = quickness(self.description, self.description.start, *largest_rates(columns))
         impacts = Impacts(self.stage.whole, self.random, quick, (begin, self.end), at_begin=True)
         if not len(impacts.times):
             return None

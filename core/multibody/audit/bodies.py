@@ -83,6 +83,8 @@ class Reader:
         Contacts of which an answer has states.
     bodies : mapping of str to RigidBody, optional
         As they are at another time, in place of the start.
+    begun : mapping of int to placement, optional
+        Where the bodies were when connections began, by their numbers; others begin where the bodies are.
 
     Attributes
     ----------
@@ -99,7 +101,9 @@ class Reader:
         instead: Mapping[Path, float] | None = None,
         answered: Collection[str] | None = None,
         bodies: Mapping[str, RigidBody] | None = None,
+        begun: Mapping[int, Placement] | None = None,
     ) -> None:
+        self.begun = begun or {}
         self.scene, self.answered, others = scene, answered, {}
         self.moderate = True
         if instead:

@@ -107,6 +107,7 @@ def description_of(
     instead: Mapping[Path, float] | None = None,
     answered: Collection[str] | None = None,
     bodies: Mapping[str, RigidBody] | None = None,
+    begun: Mapping[int, Placement] | None = None,
 ) -> Description:
     """Return the bodies of a scene and the definitions of its connections.
 
@@ -120,8 +121,10 @@ def description_of(
         Contacts of which an answer has states.
     bodies : mapping of str to RigidBody, optional
         As they are at another time, in place of the start.
+    begun : mapping of int to placement, optional
+        Where the bodies were when connections began, by their numbers.
     """
-    reader = Reader(scene, instead, answered, bodies)
+    reader = Reader(scene, instead, answered, bodies, begun)
     found: list[Definition] = []
     undefined: dict[str, str] = {}
     for name, (i, connection) in zip(scene.names(), scene.numbered(), strict=True):

@@ -22,7 +22,7 @@ from core.multibody.audit.joints import (
     attitude_to,
     perpendicular,
 )
-from core.multibody.audit.placement import Numbers, Place, length
+from core.multibody.audit.placement import Numbers, Place, Placement, length
 from core.multibody.language.connection import TwoEnded
 from core.multibody.language.joints import BallJoint, GuideCurve, Pin, Rod, Slider, Weld
 
@@ -34,7 +34,7 @@ def pin(connection: Pin, reader: Reader, name: str, path: Path) -> Definition:
     if connection.axis is None:
         return Coincidence(name, (*a.bodies, *b.bodies), a, b, None)
     axis = reader.unit(connection.axis, (*path, "axis"))
-    axes = (in_body(reader, a.body, axis), in_body(reader, b.body, axis))
+    axes = (in_body(reader.start, a.body, axis), in_body(reader.start, b.body, axis))
     return Coincidence(name, (*a.bodies, *b.bodies), a, b, axes)
 
 
@@ -51,7 +51,7 @@ def weld(connection: Weld, reader: Reader, name: str, path: Path) -> Definition:
     ends = a, b = ends_of(connection, reader, path)
     carrier = 1 if b.body is not None and reader.turns(b.body) else 0
     between = ends[1 - carrier].at(reader.start) - ends[carrier].at(reader.start)
-    arm = in_body(reader, ends[carrier].body, tuple(between.tolist()))
+    arm = in_body(reader.start, ends[carrier].body, tuple(between.tolist()))
     return WeldDefinition(name, (*a.bodies, *b.bodies), a, b, carrier, arm, _attitude(reader, a, b))
 
 
@@ -119,9 +119,9 @@ def distance_at_start(reader: Reader, a: Place, b: Place) -> float:
     return float(length(b.at(reader.start) - a.at(reader.start)))
 
 
-def in_body(reader: Reader, body: str | None, vector: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the components in the axes of a body of a vector that is given in space at the start."""
-    rotation = None if body is None else reader.start[body].rotation
+def in_body(placement: Placement, body: str | None, vector: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the components in the axes of a body of a vector that is given in space."""
+    rotation = None if body is None else placement[body].rotation
     return vector if rotation is None else tuple((np.array(vector) @ rotation).tolist())
 
 

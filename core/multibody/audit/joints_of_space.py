@@ -127,7 +127,7 @@ def cylindrical(connection: Cylindrical, reader: Reader, name: str, path: Path) 
     """Return the definition of a cylindrical joint."""
     a, b = ends_of(connection, reader, path)
     axis = reader.unit(connection.axis, (*path, "axis"))
-    axes = in_body(reader, a.body, axis), in_body(reader, b.body, axis)
+    axes = in_body(reader.start, a.body, axis), in_body(reader.start, b.body, axis)
     return CylindricalDefinition(name, (*a.bodies, *b.bodies), a, b, perpendicular(axes[1]), None, axes)
 
 
@@ -152,5 +152,5 @@ def universal(connection: Universal, reader: Reader, name: str, path: Path) -> D
     """Return the definition of a universal joint."""
     a, b = ends_of(connection, reader, path)
     axes = [reader.unit(axis, (*path, "axes", i)) for i, axis in enumerate(connection.axes)]
-    own = in_body(reader, a.body, axes[0]), in_body(reader, b.body, axes[1])
+    own = in_body(reader.start, a.body, axes[0]), in_body(reader.start, b.body, axes[1])
     return UniversalDefinition(name, (*a.bodies, *b.bodies), a, b, None, own)

@@ -15,7 +15,7 @@ from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import STEP, Numbers, Placement, moved
-from core.multibody.language.scene import Scene
+from core.multibody.language.scene import Scene, at_start
 
 STATIONARY = 2.0**-26
 """Share of the displacement to which its gradient is known: what is held is of rank only to half the digits."""
@@ -34,7 +34,7 @@ def audited_assembly(sketch: Scene, found: Scene) -> Failure | None:
     found : Scene
         With the places that are taken in its place.
     """
-    description, start = description_of(sketch), description_of(found).start
+    description, start = description_of(at_start(sketch)), description_of(at_start(found)).start
     if not description.moderate:
         return None
     names = tuple(sketch.bodies) if sketch.assemble == "nearest" else tuple(sketch.assemble["nearest"])  # type: ignore[index]

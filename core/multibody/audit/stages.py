@@ -17,7 +17,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.bodies import RigidBody
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definitions import Description, description_of
-from core.multibody.audit.placement import Numbers, Pose
+from core.multibody.audit.placement import Numbers, Placement, Pose
 from core.multibody.audit.samples import Columns, Part, samples_of
 from core.multibody.language.scene import Scene, part_of
 
@@ -71,6 +71,7 @@ def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator
     ends = [*times, inf]
     known: dict[str, tuple[Definition, ...]] = {}
     bodies: Mapping[str, RigidBody] | None = None
+    begun: dict[int, Placement] = {}
     for begin, end in zip([0.0, *times], ends, strict=True):
         now = [event for event in changes if event.time == begin]
         acting = (acting | {event.name for event in now if event.kind == "begin"}) - {
@@ -78,7 +79,9 @@ def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator
         }
         present = acting | _ended_after_impulses(answer, begin)
         known = {name: own for name, own in known.items() if name in present}
-        found = description_of(part_of(scene, {numbers[name] for name in present}), answered=answered, bodies=bodies)
+        part = part_of(scene, {numbers[name] for name in present})
+        found = description_of(part, answered=answered, bodies=bodies, begun=begun)
+        begun = {numbers[name]: begun.get(numbers[name], found.start) for name in present}
         members = {name: tuple(one for one in found.connections if one.name.split(".")[0] == name) for name in present}
         known = {**members, **known}
         if begin < end:
@@ -90,7 +93,10 @@ def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator
                 )
                 for some in (acting, present)
             )
-            yield Stage(after, _of_stage(answer, begin, end), answer, instant, begin, end)
+            own = _of_stage(answer, begin, end)
+            # Where a motion ends in the midst of what happens at one time, nothing of it comes afterwards.
+            if begin == 0.0 or own.phases:
+                yield Stage(after, own, answer, instant, begin, end)
         if end < inf:
             try:
                 columns = sampler(np.array([end]), False)

@@ -18,7 +18,7 @@ from core.multibody.audit.formulas import FormulaValue
 from core.multibody.audit.joint_definitions import in_body
 from core.multibody.audit.joints import perpendicular, pose_of
 from core.multibody.audit.placement import Motion, Numbers, Placement, Undefined, angle, carried, dot, spin_of
-from core.multibody.language.joints import axis_of_turn
+from core.multibody.language.joints import axes_of_turn
 from core.multibody.language.written import GROUND
 
 WHOLE = 2.0 * np.pi
@@ -51,8 +51,8 @@ class Axis:
     def of(cls, reader: Reader, a: str | None, b: str | None, axis: tuple[float, ...]) -> Axis:
         """Return the axis that is a unit vector in space at the start."""
         first, second = perpendicular(axis)
-        across = tuple(in_body(reader, b, e) for e in (first, second))
-        return cls(a, b, in_body(reader, a, axis), in_body(reader, a, first), across)
+        across = tuple(in_body(reader.start, b, e) for e in (first, second))
+        return cls(a, b, in_body(reader.start, a, axis), in_body(reader.start, a, first), across)
 
     def turn(self, placement: Placement) -> Numbers:
         """Return the turn since the start, between -pi and pi (rad), shape ()."""
@@ -218,10 +218,15 @@ class AxialStop(Definition):
 def axis_between(reader: Reader, a: object, b: object) -> tuple[tuple[str, ...], Axis]:
     """Return the bodies of a connection, and the axis of the joint between them; None and the ground are one."""
     first, second = str(a), GROUND if b is None else str(b)
-    found = axis_of_turn(reader.scene.numbered(), first, second)
-    if found is None:
+    joints = axes_of_turn(reader.scene.numbered(), first, second)
+    if not joints:
         raise Undefined("the bodies have no axis in common")
-    axis, path = found
+    number, written = next(iter(joints.items()))
+    axis = reader.unit(written, ("connections", number, "axis"))
     bodies = tuple(one for one in (first, second) if one != GROUND)
     ends = [None if one == GROUND else one for one in (first, second)]
-    return bodies, Axis.of(reader, ends[0], ends[1], reader.unit(axis, path))
+    if ends[1] is not None and number in reader.begun:
+        # Fixed in the body since the joint has begun.
+        inside = in_body(reader.begun[number], ends[1], axis)
+        axis = tuple(carried(reader.start[ends[1]], inside).tolist())
+    return bodies, Axis.of(reader, ends[0], ends[1], axis)

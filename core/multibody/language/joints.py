@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from core.errors import Path
 from core.multibody.language.connection import (
     ATTITUDE,
     Aspect,
@@ -208,8 +207,8 @@ class Relation(TimedConnection):
         return (self.of, self.equals)
 
 
-def axis_of_turn(connections: Iterable[tuple[int, Connection]], a: str, b: str) -> tuple[Vector, Path] | None:
-    """Return the axis about which body `a` turns relative to another, as it was written, and its path; None without.
+def axes_of_turn(connections: Iterable[tuple[int, Connection]], a: str, b: str) -> dict[int, Vector]:
+    """Return the axes about which body `a` turns relative to another, as they were written, by numbers of their joints.
 
     Parameters
     ----------
@@ -218,9 +217,10 @@ def axis_of_turn(connections: Iterable[tuple[int, Connection]], a: str, b: str) 
     a, b : str
         Of the bodies; the ground is one.
     """
+    found: dict[int, Vector] = {}
     for i, one in connections:
         if isinstance(one, (Pin, Cylindrical, Screw)) and one.axis is not None:
             ends = {end.partition(".")[0] if isinstance(end, str) else GROUND for end in (one.a, one.b)}
             if ends == {a, b}:
-                return one.axis, ("connections", i, "axis")
-    return None
+                found[i] = one.axis
+    return found

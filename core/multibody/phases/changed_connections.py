@@ -58,7 +58,7 @@ def changed(base: Described, acting: Acting, due: Sequence[Entry], tracks: Track
         For a connection that cannot begin there.
     """
     begin, end, blows = (
-        frozenset(entry.name for entry in due if entry.what == what) for what in ("begin", "end", "impulse")
+        frozenset(entry.name for entry in due if entry.kind == kind) for kind in ("begin", "end", "impulse")
     )
     before = [_placed(base, track) for track in tracks.each] if begin else tracks.each
     fresh = [_acting(acting, begin, end, track) for track in before]
@@ -133,12 +133,12 @@ def _recorded(
     events, works = [], dict[str, Ball]()
     done, rates = struck(table, ()), list(table.v)
     for entry in due:
-        if entry.what == "end":
+        if entry.kind == "end":
             events.append(MotionEvent("end", entry.name, time, error))
     for entry in due:
-        if entry.what == "end":
+        if entry.kind == "end":
             continue
-        blow = [pushes[entry.name]] if entry.what == "impulse" else []
+        blow = [pushes[entry.name]] if entry.kind == "impulse" else []
         done = struck(replace(table, v=rates), blow)
         work = kinetic(replace(table, v=done.v)) - kinetic(replace(table, v=rates))
         own = {part: evaluated(poly, table.q) for part, poly in blow[0].components.items()} if blow else {}
@@ -162,4 +162,4 @@ def _event(
     errors = ImpactErrors(
         {name: distance_bound(x, impulses[name]) for name, x in found.items()}, distance_bound(-work, loss)
     )
-    return MotionEvent(entry.what, entry.name, *when, impulses, loss, errors)
+    return MotionEvent(entry.kind, entry.name, *when, impulses, loss, errors)

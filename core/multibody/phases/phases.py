@@ -176,8 +176,10 @@ class _Run:
             if not self.motion.phases:
                 raise
             names = tuple(entry.name for entry in due)
+            begins = any(entry.kind == "begin" for entry in due)
             what = "/".join(map(str, fault.path)) or "the places"
-            explanation = f"{', '.join(names)} cannot begin here: {what} would have to {fault.rule}"
+            happens = "begin" if begins else "end"
+            explanation = f"{', '.join(names)} cannot {happens} here: {what} would have to {fault.rule}"
             decided_by = "places at which it can begin, or another occasion"
             self._stop(Problem("cannot-begin", explanation, names, decided_by=decided_by))
             return True

@@ -19,9 +19,9 @@ from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described
 from core.multibody.trajectory.quantities import Sought, sought_in
 
-What = Literal["begin", "end", "impulse"]
+Kind = Literal["begin", "end", "impulse"]
 
-KINDS: Mapping[str, What] = {"from": "begin", "until": "end", "at": "impulse"}
+KINDS: Mapping[str, Kind] = {"from": "begin", "until": "end", "at": "impulse"}
 """What happens at the occasion of each field."""
 
 CLEAR = 2.0**-40
@@ -32,13 +32,13 @@ MOST_POWERS = 6
 
 @dataclass
 class Entry:
-    """Something that happens at an occasion.
+    """Something that happens at an occasion; afterwards it is an event.
 
     Attributes
     ----------
     name : str
         Of the connection.
-    what : {"begin", "end", "impulse"}
+    kind : {"begin", "end", "impulse"}
     occasion : Occasion
     path : Path
         To the field that says it.
@@ -49,7 +49,7 @@ class Entry:
     """
 
     name: str
-    what: What
+    kind: Kind
     occasion: Occasion
     path: Path
     passages: int = 0
@@ -95,12 +95,16 @@ class Schedule:
 
     def pending(self) -> list[Entry]:
         """Return what may happen next: what has not begun does not end."""
-        waiting = {entry.name for entry in self.entries if entry.what == "begin"}
-        return [entry for entry in self.entries if not (entry.what == "end" and entry.name in waiting)]
+        waiting = {entry.name for entry in self.entries if entry.kind == "begin"}
+        return [entry for entry in self.entries if not (entry.kind == "end" and entry.name in waiting)]
 
     def due(self, now: Ball, events: Sequence[Event]) -> list[Entry]:
-        """Return what happens now, and take it off the list."""
-        found = [entry for entry in self.pending() if entry.occasion.has_come(now, events, entry.passages)]
+        """Return what happens now, and take it off the list: also what ends with something that ends now."""
+        pending, found, happened = self.pending(), list[Entry](), list(events)
+        while due := [one for one in pending if one.occasion.has_come(now, happened, one.passages)]:
+            pending = [entry for entry in pending if entry not in due]
+            found.extend(due)
+            happened.extend(one for one in due if one.kind == "end")
         self.entries = [entry for entry in self.entries if entry not in found]
         return found
 

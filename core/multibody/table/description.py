@@ -103,6 +103,11 @@ def described(
     faults = FaultsOfParts()
     numbered = list(zip(names, scene.numbered(), strict=True))
     timed = [one for one in numbered if one[1][1].timed]
+    measures.begun = {
+        i: None if acting is None else acting.get(name)
+        for name, (i, connection) in numbered
+        if not connection.timed or (connection.starts if acting is None else name in acting)
+    }
     if needs_clock([connection for _, (_, connection) in timed], scene.let):
         clock(measures)
     for name, (i, connection) in numbered:
@@ -116,9 +121,8 @@ def described(
             measures.works.extend(driven)
             measures.conservative = measures.conservative and not driven
     for name, (i, connection) in timed:
-        acts = connection.starts if acting is None else name in acting
         with faults.part():
-            begun = None if acting is None else acting.get(name)
+            acts, begun = i in measures.begun, measures.begun.get(i)
             add_timed(connection, measures, name, ("connections", i), begun, acts=acts)
     faults.raised()
     balance_massless_places(measures)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from core.errors import Path
@@ -72,3 +73,11 @@ class Given:
     line: dict[int, Ball]
     value: Ball
     path: Path
+
+
+def axis_after(axis: Sequence[Ball], frame: Frame | None, before: Sequence[Ball], after: Sequence[Ball]) -> list[Ball]:
+    """Return where a vector of space goes that is fixed in a body between two places of it; None is the ground."""
+    if frame is None or frame.axes is None:
+        return list(axis)
+    inside = [sum((before[i] * x for i, x in zip(own, axis, strict=True)), ZERO) for own in frame.axes]
+    return [sum((x * after[own[k]] for x, own in zip(inside, frame.axes, strict=True)), ZERO) for k in range(3)]

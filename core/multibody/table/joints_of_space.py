@@ -14,7 +14,7 @@ from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.moving_places import ends_of, require_two_bodies
 from core.multibody.table.rows import add_rows
-from core.multibody.table.turns_in_space import turn_in_space
+from core.multibody.table.turns_in_space import turn_about
 
 
 @add_rows.register
@@ -39,7 +39,7 @@ def screw(connection: Screw, measures: Measures, name: str, path: Path) -> None:
     axis = unit(measures.numerals.vector(connection.axis, (*path, "axis"), 3), (*path, "axis"))
     way = measures.coordinates.vector_of(b.body, measures.in_body(b.body, axis), path)
     along = dot(way, [difference(x, y) for x, y in zip(a.at, b.at, strict=True)])
-    turn = turn_in_space(measures, name, a.body or GROUND, b.body or GROUND, path)
+    turn = turn_about(measures, name, (a.body or GROUND, b.body or GROUND), axis, measures.table.q, path)
     begun = constant(evaluated(along, measures.table.q))
     row = measures.hold(name, combined((ONE, along), (-pitch / (2 * ONE.pi()), turn), (-ONE, begun)))
     measures.force(f"{name}.force", [(row, constant(ONE))])

@@ -58,6 +58,9 @@ class Measures:
         self.waiting = False
         # When that connection takes from the places what it holds, as faults say it.
         self.moment = AT_START
+        # The connections that act, by their numbers, with the coordinates at their beginning; None is the start.
+        self.begun: Mapping[int, Sequence[Ball] | None] = {}
+        self.start_places = list(coordinates.table.q)
         # What begins and ends, and blows, by their connections.
         self.timed: dict[str, Timed] = {}
         self.blows: dict[str, Push] = {}

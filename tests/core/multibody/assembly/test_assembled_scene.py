@@ -205,6 +205,15 @@ def test_refused_places_name_the_nearest_that_fit() -> None:
     assert "no places satisfy them all" in refused.value.remedy
 
 
+def test_a_ball_that_nothing_sees_turn_keeps_its_angular_velocity() -> None:
+    ball = {"mass": 2, "at": [0, 0.3, 0], "moments": [1, 1, 1], "angular_velocity": [1, 2, 3], "velocity": [1, 1, 1]}
+    plane = {"kind": "track", "name": "plane", "place": "ball", "on": {"at": [0, 0, 0], "normal": [0, 1, 0]}}
+    with pytest.raises(InvalidParameter) as refused:
+        solve_scene(read({"bodies": {"ball": ball}, "connections": [plane]}))
+    assert refused.value.remedy is not None
+    assert '"ball" at [0, 0, 0]' in refused.value.remedy
+
+
 @pytest.mark.parametrize("wrong", ["near", {"nearest": []}, {"nearest": ["bop"]}, {"closest": ["bob"]}])
 def test_an_assembly_that_is_none_is_refused(wrong: Any) -> None:
     with pytest.raises(InvalidParameter) as refused:

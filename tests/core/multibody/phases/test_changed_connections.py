@@ -480,9 +480,10 @@ def test_the_audit_refuses_an_occasion_at_another_time(monkeypatch: pytest.Monke
         solved([1.0], connections=[rod_until(0.5)], **BOB)
 
 
-@pytest.mark.parametrize("until", [{"event": {"name": "r"}}, {"event": {"kind": "begin", "name": "r"}}])
+@pytest.mark.parametrize("until", [{"event": {"name": "r"}}, {"event": {"kind": "begin", "name": "r"}}, 0.25])
 def test_a_rod_that_begins_and_ends_at_once_takes_the_speed_along_it(until: Any) -> None:
-    rod = {"kind": "rod", "name": "r", "a": "bob", "b": [0, 0], "from": 0.5, "until": until}
+    begin = {"when": {"quantity": "bob.velocity.y", "equals": -5}}
+    rod = {"kind": "rod", "name": "r", "a": "bob", "b": [0, 0], "from": begin, "until": until}
     found = solved([1.2], connections=[rod], **BOB)
     # At (1, -5/4) with (0, -5): what is left is (v.t) t with t across the rod.
     assert happened(found) == [("begin", "r"), ("end", "r")]
@@ -494,3 +495,95 @@ def test_a_floor_that_is_taken_away_by_its_touch_has_pushed() -> None:
     found = solved([1.0], connections=[{**floor, "until": {"event": {"kind": "touch", "name": "f"}}}], **BOB)
     assert happened(found) == [("touch", "f"), ("end", "f")]
     assert column(found, "bob.velocity")[0, 1] == pytest.approx(2.5 - 5, abs=1e-13)
+
+
+def gimbal(fr: Any, until: Any = None) -> dict[str, Any]:
+    """Return a disc on an axle that turns with a free ball, from a time on with a brake between them."""
+    brake = {"kind": "damper", "name": "brake", "a": "disc", "b": "ball", "measure": "turn", "coefficient": 0.5}
+    return {
+        "bodies": {
+            "ball": {"mass": 1, "moments": [0.1, 0.1, 0.1], "at": [0, 0, 0], "angular_velocity": [2, 0, 0]},
+            "disc": {"mass": 1, "moments": [0.1, 0.15, 0.2], "at": [0, 0, 0], "angular_velocity": [2, 0, 5]},
+        },
+        "connections": [
+            {"kind": "pin", "name": "axle", "a": "disc", "b": "ball", "axis": [0, 0, 1], "until": until},
+            {**brake, "from": fr},
+        ],
+    }
+
+
+def test_what_begins_about_an_axle_has_the_axis_as_it_lies_then() -> None:
+    found = solved([0.5, 1.0], ("trajectory", "forces-in-time"), **gimbal(0.5))
+    moments = np.diag([0.1, 0.15, 0.2])
+
+    def change(t: float, y: np.ndarray) -> np.ndarray:
+        # The disc is turned by its angle about the axis n of the ball; T.n = -c s, and no moment acts on both.
+        ball, (omega, angle, rate) = y[:9].reshape(3, 3), (y[9:12], y[12], y[13])
+        n = ball[:, 2]
+        c, s = np.cos(angle), np.sin(angle)
+        disc = ball @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        own, other = disc @ moments @ disc.T, 0.1 * np.eye(3)
+        whole = omega + rate * n
+        known = own @ (rate * np.cross(omega, n)) + np.cross(whole, own @ whole)
+        equations = np.zeros((4, 4))
+        equations[:3, :3], equations[:3, 3] = own + other, own @ n
+        equations[3, :3], equations[3, 3] = n @ own, n @ own @ n
+        brake = -0.5 * rate if t >= 0.5 else 0.0
+        slopes = np.linalg.solve(equations, [*-known, brake - n @ known])
+        return np.concatenate([np.cross(omega, ball.T).T.ravel(), slopes[:3], [rate], slopes[3:]])
+
+    y = np.array([*np.eye(3).ravel(), 2, 0, 0, 0, 5])
+    for end, row in ((0.5, 0), (1.0, 1)):
+        y = solve_ivp(change, (end - 0.5, end), y, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+        np.testing.assert_allclose(
+            column(found, "ball.angular_velocity")[row], y[:9].reshape(3, 3).T @ y[9:12], atol=1e-10
+        )
+        assert column(found, "brake.torque")[row] == pytest.approx(-0.5 * y[13], abs=1e-10)
+
+
+def test_what_acts_about_an_axle_ends_no_later_than_that() -> None:
+    found = solved([0.2, 1.0], **gimbal(0.25, until=0.5))
+    assert found.problem is not None
+    assert "axle cannot end here: connections/1/a would have to be joined to b" in found.problem.explanation
+    scene = gimbal(0.25, until=0.5)
+    scene["connections"][1]["until"] = {"event": {"kind": "end", "name": "axle"}}
+    assert happened(solved([0.2, 1.0], **scene)) == [("begin", "brake"), ("end", "axle"), ("end", "brake")]
+    scene["connections"][0] |= {"from": 0.25, "until": None}
+    scene["connections"][1]["from"] = None
+    with pytest.raises(InvalidParameter, match="whenever it acts") as refused:
+        solved([1.0], **scene)
+    assert refused.value.path == ("connections", 1, "a")
+
+
+def test_a_motion_may_end_in_the_midst_of_what_happens_at_one_time() -> None:
+    found = solved(
+        [0.25, 1.0],
+        bodies={"a": {"mass": 1, "at": [0, 0], "velocity": [1, 1]}, "b": {"mass": 1, "at": [1, 0]}},
+        connections=[
+            {"kind": "rod", "name": "rod", "a": "a", "b": "b", "from": 0.25},
+            {"kind": "pin", "name": "hook", "a": "a", "b": [0, 0], "from": {"event": {"name": "rod"}}},
+        ],
+    )
+    assert [one.kind for one in found.events] == ["begin", "cannot-begin"]
+    np.testing.assert_allclose(column(found, "a.position"), [[0.25, 0.25]], rtol=1e-15)
+
+
+def test_a_beginning_is_compared_where_a_body_has_turned() -> None:
+    body = {"mass": 1, "moments": [0.2, 0.2, 0.2], "angular_velocity": [1, 1, 0], "places": {"q": [-0.2, 0.1, 0.1]}}
+    found = solved(
+        [1.0],
+        bodies={"a": {**body, "at": [0, 0, 0]}, "b": {**body, "at": [1.2, 0, 0.3]}},
+        connections=[
+            {"kind": "impulse", "name": "blow", "body": "b", "impulse": [1, 1, 1], "at": 0.3},
+            {"kind": "inverse-square", "name": "pull", "a": "b.q", "b": "a", "strength": 0.5, "from": 0.3},
+        ],
+    )
+    assert happened(found) == [("impulse", "blow"), ("begin", "pull")]
+
+
+def test_a_sketch_need_not_fit_what_begins_later() -> None:
+    rod = {"kind": "rod", "name": "rod", "a": "bob", "b": [0, 0], "length": 2, "from": 0.5}
+    track = {"kind": "track", "name": "line", "place": "bob", "on": {"at": [0, 1]}}
+    bodies = {"bob": {"mass": 1, "at": ["sqrt(3)", 0.9]}}
+    found = solved([1.0], bodies=bodies, connections=[track, rod], assemble="nearest")
+    np.testing.assert_allclose(column(found, "bob.position"), [[np.sqrt(3.0), 1.0]], rtol=1e-14)
