@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from core.errors import Path
 from core.systems.budget import Budget
 from service.requests.request_reader import Limits, Reader
 from service.routes import questions
 from service.routes.studies import studying
-from service.routing import PostRoute
+from service.routing import Columns, ManyFigures, PostRoute
 
 ROUTES = {route.path: route for route in questions() if route.many is not None}
 
@@ -87,11 +89,13 @@ FIGURES = {
         "/trajectory/columns/one.angular_velocity/values/1",
     ],
 }
+TOGETHER = {"/v1/rotation/precession": [120, 200, 223], "/v1/scenes": [24, 8]}
+"""How many members of each set are answered together: of scenes all that can be, of 125, 216 and 225 bodies most."""
 CASES = [(path, k) for path, sets in RANGES.items() for k in range(len(sets))]
 
 
 def test_every_such_route_is_tested() -> None:
-    assert set(ROUTES) == set(RANGES) == set(FIGURES)
+    assert set(ROUTES) == set(RANGES) == set(FIGURES) == set(TOGETHER)
 
 
 def block(route: PostRoute, study: dict[str, Any]) -> Any:
@@ -114,7 +118,17 @@ def test_many_have_the_bits_of_each_alone(path: str, k: int) -> None:
         "vary": RANGES[path][k],
         "quantities": FIGURES[path],
     }
-    many, alone = block(route, study), block(replace(route, many=None), study)
+    counts = []
+
+    def counted(request: Any, columns: Columns, figures: Sequence[Path]) -> ManyFigures | None:
+        assert route.many is not None
+        found = route.many(request, columns, figures)
+        counts.append(0 if found is None else int(found.answered.sum()))
+        return found
+
+    many, alone = block(replace(route, many=counted), study), block(replace(route, many=None), study)
+    # The first question is whether members are answered together at all.
+    assert sum(counts[1:]) == TOGETHER[path][k]
     assert many.inputs.tobytes() == alone.inputs.tobytes()
     for found in (many, alone):
         found.figures[np.isnan(found.figures)] = np.nan

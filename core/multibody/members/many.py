@@ -64,6 +64,7 @@ class ManyScenes:
         return (
             scene.assemble is None
             and not scene.one_sided
+            and not scene.changes
             and not scene.switches
             and 0 < len(times) <= MOST_SAMPLES
             and bool(times.min() >= 0.0)

@@ -68,7 +68,7 @@ def test_what_has_no_place_in_lanes_is_left_out() -> None:
 
 
 def test_scenes_of_other_kinds_are_not_followed_together() -> None:
-    """Contacts, sketches, and parts that share nothing; times before the start."""
+    """Contacts, sketches, separate parts, what begins, ends or strikes, and strings; times before the start."""
     one = many(double_pendulum(), ANGLES)
     assert one.can_follow(np.array([0.0, 1.0]))
     assert not any(one.can_follow(np.array(times)) for times in ([], [0.0], [-1.0, 1.0]))
@@ -76,8 +76,19 @@ def test_scenes_of_other_kinds_are_not_followed_together() -> None:
     apart["connections"].pop()
     sketch = double_pendulum() | {"assemble": "nearest"}
     strings = double_pendulum()
-    strings["connections"][1] = {"kind": "string", "a": "two.top", "b": "one.end", "length": 1}
-    touching = double_pendulum()
-    touching["connections"].append({"kind": "contact", "a": "two.top", "b": {"point": [0, -9], "normal": [0, 1]}})
-    for description in (apart, sketch):
+    strings["connections"][1] = {"kind": "string", "through": ["two.top", "one.end"], "length": 1}
+    touching = with_connection(kind="contact", a="two.top", b={"point": [0, -9], "normal": [0, 1]})
+    spring = {"kind": "torsion-spring", "a": "two", "b": "one", "stiffness": 3, "rest_angle": 0.2}
+    ending, beginning = with_connection(**spring, until=0.5), with_connection(**spring, **{"from": 0.5})
+    struck = with_connection(kind="impulse", place="two.end", impulse=[0, 1])
+    for description in (apart, sketch, touching, ending, beginning, struck):
         assert not many(description, ANGLES).can_follow(np.array([1.0]))
+    # That a string may become slack is seen in its set-up.
+    assert not list(many(strings, ANGLES).answered(np.array([[0.5, 1.0]]), np.array([1.0]), 1e-9))
+
+
+def with_connection(**connection: Any) -> Any:
+    """Return a double pendulum with another connection."""
+    description = double_pendulum()
+    description["connections"].append(connection)
+    return description
