@@ -279,7 +279,7 @@ def test_a_question_for_stack_has_the_variants_of_the_service(service: str) -> N
             assert polhode.precession(body=body, angular_velocity=[0.1, rate, 0.1])["flip_interval"] == answer
 
 
-def coderunner(tmp_path: Path, bundle: Path, program: str) -> Any:
+def coderunner(tmp_path: Path, bundle: Path, program: str, *, without_landlock: bool = False) -> Any:
     """Run the template as CodeRunner does: expanded by Twig, whose syntax here is that of Jinja."""
     environment = jinja2.Environment()
     environment.filters["e"] = lambda text, kind: text.replace("\\", "\\\\").replace('"', '\\"')
@@ -291,21 +291,29 @@ def coderunner(tmp_path: Path, bundle: Path, program: str) -> Any:
     )
     shutil.copy(bundle.with_suffix(".zip"), tmp_path)
     shutil.copy(PLATFORMS / "polhode_results.py", tmp_path)
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=100,
+    if without_landlock:
+        code = code.replace(
+            "CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444", "CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 9999"
+        )
+    # As Jobe runs it: the shell writes into files of the folder of the run, which are then read by their paths.
+    (tmp_path / "prog.py").write_text(code)
+    subprocess.run(
+        ["sh", "-c", f"{sys.executable} prog.py > prog.out 2> prog.err; echo $? > prog.status"],
+        cwd=tmp_path, check=True, timeout=100,
         env=without_service() | {"PYTHONPATH": str(tmp_path), "TMPDIR": str(tmp_path)},
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "prog.status").read_text() == "0\n", (tmp_path / "prog.err").read_text()
     assert not list(tmp_path.glob("*/bundle")), "the answer keys are left for the next program"
-    return json.loads(done.stdout)
+    return json.loads((tmp_path / "prog.out").read_text())
 
 
 DETACHED = """
-import os, time
+import os, sys, time
 if os.fork() == 0:
     os.setsid()
     if os.fork() == 0:
-        open("detached", "w").write(str(os.getpid()))
+        print(os.getpid(), file=sys.stderr, flush=True)
+        open("detached", "w")
         {attack}
     os._exit(0)
 os.wait()
@@ -332,7 +340,7 @@ def test_what_a_program_leaves_behind_ends_before_the_keys_are_unpacked(
 ) -> None:
     found = coderunner(tmp_path, bundle, DETACHED.replace("{attack}", attack))
     assert found["fraction"] == 0.0
-    process = int((tmp_path / "detached").read_text())
+    process = int(found["prologuehtml"].removeprefix("<pre>").split()[0])
     assert not Path(f"/proc/{process}").exists()
 
 
@@ -361,12 +369,61 @@ answers = [1, 2]
     assert found["prologuehtml"] == ""
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may read the memory of every process")
-def test_a_program_cannot_read_the_keys_in_memory(tmp_path: Path, bundle: Path) -> None:
-    reading = "import os\nopen(f'/proc/{os.getppid()}/mem', 'rb')\nanswers = [6.2806, 1]"
-    found = coderunner(tmp_path, bundle, reading)
+FORGED = json.dumps({"fraction": 1.0, "testresults": [["iscorrect"], [1]], "prologuehtml": ""})
+ATTACKS = {
+    "the output by its path": "open('{run}/prog.out', 'w').write(forged)",
+    "another file in place of the output": "os.unlink('{run}/prog.out'); open('{run}/prog.out', 'w').write(forged)",
+    "another file moved over the output": "open('mine', 'w').write(forged); os.rename('mine', '{run}/prog.out')",
+    "the output as the grader has it open": "open(f'/proc/{os.getppid()}/fd/1', 'a').write(forged)",
+    "the output of whoever has it open": "open(f'/proc/{grandparent}/fd/1', 'a').write(forged)",
+    "the memory of the grader": "open(f'/proc/{os.getppid()}/mem', 'r+b')",
+    "a module of the grader": "open('{run}/polhode_results.py', 'w').write('raise SystemExit')",
+    "a module for the grader": "open('{run}/json.py', 'w').write('raise SystemExit')",
+    "the folder of the run": "os.rename('{run}', '{run}-old')",
+    "a link into the folder of the run": "os.link('{run}/prog.py', 'mine')",
+    "another file system over the run": "if os.system('mount -t tmpfs none {run}'): raise PermissionError",
+}
+
+
+@pytest.mark.parametrize("attack", ATTACKS.values(), ids=ATTACKS)
+def test_a_program_changes_nothing_of_the_run_that_grades_it(tmp_path: Path, bundle: Path, attack: str) -> None:
+    """Whatever its user is: the tests' is often root."""
+    run = tmp_path / "run"
+    run.mkdir()
+    program = f"""
+import os
+forged = {FORGED!r}
+grandparent = int(open(f"/proc/{{os.getppid()}}/stat").read().rpartition(")")[2].split()[1])
+{attack.replace("{run}", str(run))}
+answers = [6.2806, 1]
+"""
+    found = coderunner(run, bundle, program)
     assert found["fraction"] == 0.0
-    assert "PermissionError" in found["prologuehtml"]
+    assert "Error" in found["prologuehtml"]
+    assert {file.name for file in run.iterdir()} <= {
+        *("prog.py", "prog.out", "prog.err", "prog.status", "polhode_results.py", "__pycache__"),
+    }
+
+
+def test_a_program_has_a_folder_of_its_own_to_write_in(tmp_path: Path, bundle: Path) -> None:
+    program = """
+import os, subprocess, sys, tempfile
+with tempfile.TemporaryDirectory() as folder:
+    open(f"{folder}/a", "w").write("6.2806")
+    os.rename(f"{folder}/a", "b")
+os.makedirs("left/behind")
+os.chmod("left", 0)
+subprocess.run([sys.executable, "-c", "print(1)"], check=True, stdout=subprocess.DEVNULL)
+answers = [float(open("b").read()), "1 rad/s"]
+"""
+    assert coderunner(tmp_path, bundle, program)["fraction"] == 1.0
+
+
+def test_no_program_is_run_where_it_cannot_be_kept_from_the_grader(tmp_path: Path, bundle: Path) -> None:
+    """As on systems without Landlock: the number of its system call here is that of none."""
+    found = coderunner(tmp_path, bundle, "answers = [6.2806, 1]", without_landlock=True)
+    assert found["fraction"] == 0.0
+    assert "cannot be run apart" in found["prologuehtml"]
 
 
 @pytest.mark.parametrize(
