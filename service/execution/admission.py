@@ -70,10 +70,12 @@ class Compute:
         self.terms = terms_of(settings, table)
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
-        self.processes = Processes(self.size, serve, (self.terms, COMPUTE_NICE), PRELOAD, self._lost, metrics.moved.inc)
+        self.held = HeldBytes(settings.max_held_bytes)
+        self.processes = Processes(
+            self.size, serve, (self.terms, COMPUTE_NICE), PRELOAD, self._lost, metrics.moved.inc, held=self.held
+        )
         metrics.waiting.set_function(lambda: self.processes.waiting)
         metrics.long.set_function(lambda: self.processes.long)
-        self.held = HeldBytes(settings.max_held_bytes)
         self._up = self._stopping = False
         self._lifeline: Lifeline | None = None
 

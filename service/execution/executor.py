@@ -37,6 +37,7 @@ class Executor:
             # What it costs is charged when that is known; who has debts is refused.
             sender.key.work(0.0)
         if not npz and len(body) <= self._bytes:
+            self._compute.held.require_share(sender.client)
             since = perf_counter()
             try:
                 document = self.answer_inline(route, body, media, later=later)

@@ -23,7 +23,9 @@ from service.execution.fair_shares import QUANTUM, FairShares
 from service.execution.job import DeadlineExceeded, Job, NoProcess, SliceUsed, Stopped, WorkerDied
 from service.execution.messages import Buffer
 from service.execution.process_starter import ProcessStarter
+from service.execution.unread_answers import UnreadAnswers
 from service.execution.worker_process import Process
+from service.http.held_bytes import HeldBytes
 from service.observability.logs import LOG
 
 BEGIN_SECONDS = 5.0
@@ -51,6 +53,8 @@ class Processes:
         Called with the exit code of a process that died by itself.
     moved : callable
         Called when a request is moved to the long class.
+    held : HeldBytes
+        Of answers; one for which its client has no room stays in its process.
     slice_seconds : float
         Processor time that a request may use in the short class (s).
     reserve : int
@@ -66,6 +70,7 @@ class Processes:
         lost: Callable[[int], None],
         moved: Callable[[], None] = lambda: None,
         *,
+        held: HeldBytes,
         slice_seconds: float = SLICE,
         reserve: int = RESERVE,
     ) -> None:
@@ -76,6 +81,7 @@ class Processes:
         self._waiting: FairQueue[Job] = FairQueue()
         self._short: set[Job] = set()
         self._long: FairShares[Job] = FairShares()
+        self._unread = UnreadAnswers(held, self._hand_out)
         self._turns: asyncio.TimerHandle | None = None
         self._idle: deque[Process] = deque()
         self._all: set[Process] = set()
@@ -91,7 +97,7 @@ class Processes:
     @property
     def ready(self) -> bool:
         """Whether all processes are there and ready."""
-        return sum(process.ready and not process.killed for process in self._all) >= self._kept + len(self._long)
+        return sum(process.ready and not process.killed for process in self._all) >= self._needed
 
     @property
     def any_ready(self) -> bool:
@@ -107,6 +113,11 @@ class Processes:
     def long(self) -> int:
         """Number of requests in the long class."""
         return len(self._long)
+
+    @property
+    def unread(self) -> int:
+        """Number of answers for which their clients have no room."""
+        return len(self._unread)
 
     def waiting_of(self, client: Hashable) -> Sequence[Job]:
         """Return the requests of a client that no process has begun, the first to have its turn first."""
@@ -151,13 +162,25 @@ class Processes:
         return job
 
     def drop(self, job: Job) -> None:
-        """Make sure that nothing works on a request any more."""
+        """Make sure that nothing works on a request any more; whoever has its reply counts that from now on."""
         job.reply.cancel()
+        self._unread.forget(job)
         process = self._detach(job)
         if process is not None:
             process.kill()
         else:
             self._waiting.remove(job.client, job)
+        self._hand_out()
+
+    def announced(self, process: Process, length: int) -> None:
+        """Take that a reply is ready: the request needs no processor any more."""
+        job = process.job
+        if process.killed or job is None:
+            return
+        self._rest(job)
+        process.go_on()
+        self._unread.announce(job, process, length)
+        self._keep_up()
         self._hand_out()
 
     def heard(self, process: Process, message: memoryview | None) -> None:
@@ -181,7 +204,7 @@ class Processes:
             self._detach(job)
             if not job.reply.done():
                 job.reply.set_result(message)
-        if len(self._all) > 2 * self._kept + len(self._long):
+        if len(self._all) > self._kept + self._needed:
             # Left over from long requests that have ended; some are kept for the next ones.
             process.kill()
         else:
@@ -240,8 +263,15 @@ class Processes:
             process.give(job)
         self._share()
 
+    @property
+    def _needed(self) -> int:
+        """Number of processes: those of the short class, and those that are taken for long."""
+        return self._kept + len(self._long) + len(self._unread)
+
     def _may_begin(self, job: Job) -> bool:
-        """Return whether a request may begin, which may turn out long."""
+        """Return whether a request may begin, which may turn out long; not while its client has answers to read."""
+        if self._unread.has(job.client):
+            return False
         return not self._long.full if job.is_long else self._long.may_have_another(job.client)
 
     def _share(self) -> None:
@@ -330,13 +360,17 @@ class Processes:
             self._waiting.put_back(job.client, job)
             self._hand_out()
 
-    def _detach(self, job: Job) -> Process | None:
-        """Stop the clocks of a request, and separate it from the process that it was given to, which is returned."""
+    def _rest(self, job: Job) -> None:
+        """Stop the clocks of a request, which takes part in no class any more."""
         job.rest()
         self._short.discard(job)
         self._long.remove(job)
         if job.timer is not None:
             job.timer.cancel()
+
+    def _detach(self, job: Job) -> Process | None:
+        """Rest, and separate a request from the process that it was given to, which is returned."""
+        self._rest(job)
         process = self.process_of(job)
         if process is not None:
             job.used = process.used
@@ -349,7 +383,7 @@ class Processes:
 
     def _keep_up(self, *, failed: bool = False) -> None:
         """Start as many processes as are lacking; after a pause if the last one failed."""
-        lacking = self._kept + len(self._long) - len(self._starting) - sum(not each.killed for each in self._all)
+        lacking = self._needed - len(self._starting) - sum(not each.killed for each in self._all)
         for _ in range(lacking):
             task = asyncio.ensure_future(self._begin(failed))
             self._starting.add(task)

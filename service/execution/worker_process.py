@@ -24,6 +24,9 @@ used it. One that waits for a core alone, beside other programs that take all of
 class Listener(Protocol):
     """Receives what comes from a process."""
 
+    def announced(self, process: Process, length: int) -> None:
+        """Take that it is about to send a reply of so many bytes."""
+
     def heard(self, process: Process, message: memoryview | None) -> None:
         """Take a message, None for that it is ready or has begun."""
 
@@ -39,7 +42,7 @@ class Process(asyncio.BufferedProtocol):
 
     def __init__(self, listener: Listener, handle: ForkServerProcess) -> None:
         self._listener, self.handle = listener, handle
-        self._transport: asyncio.WriteTransport | None = None
+        self._transport: asyncio.Transport | None = None
         self._length = memoryview(bytearray(LENGTH))
         self._target, self._filled = self._length, 0
         self.ready = self.killed = self.stopped = False
@@ -48,7 +51,7 @@ class Process(asyncio.BufferedProtocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Keep the connection."""
-        self._transport = cast(asyncio.WriteTransport, transport)
+        self._transport = cast(asyncio.Transport, transport)
 
     def give(self, job: Job) -> None:
         """Send a request."""
@@ -73,11 +76,13 @@ class Process(asyncio.BufferedProtocol):
         elif length := int.from_bytes(received, "little"):
             # Memory that is not written before the message fills it.
             self._target = np.empty(length, np.uint8).data
+            self._listener.announced(self, length)
         else:
             self._listener.heard(self, None)
 
     def connection_lost(self, error: Exception | None) -> None:
         """The process has ended."""
+        self._transport = None
         self._listener.ended(self)
 
     @property
@@ -117,9 +122,21 @@ class Process(asyncio.BufferedProtocol):
             self.stopped = False
             self._signal(signal.SIGCONT)
 
+    def hold_back(self) -> None:
+        """Receive nothing from it until it is to be received: its reply stays where it is."""
+        if self._transport is not None:
+            self._transport.pause_reading()
+
+    def receive(self) -> None:
+        """Receive what was held back."""
+        if self._transport is not None and not self._transport.is_reading():
+            self._transport.resume_reading()
+
     def kill(self) -> None:
         """End it at once, whatever it does."""
         self.killed = True
+        # Its end is heard of by reading.
+        self.receive()
         self._signal(signal.SIGKILL)
 
     def _signal(self, number: signal.Signals) -> None:

@@ -27,7 +27,7 @@ from service.http.limits import (
     refuse_parameters,
     require_readable,
 )
-from service.http.request_context import VARY, RequestContext
+from service.http.request_context import BUFFERED, VARY, RequestContext
 from service.observability.failed_checks import FailedChecks
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
@@ -168,14 +168,20 @@ class Dispatcher:
                 await self._stream(document, _etag_of_answer(route, body, media), context, _NPZ)
                 return
             if media is not None:
-                await context.answer(Representation(document.whole(), (b"content-type", media.encode()), (VARY,)))
+                await self._answer(
+                    Representation(document.whole(), (b"content-type", media.encode()), (VARY,)), context
+                )
                 return
             if document.large:
                 await self._stream(document, _etag_of_answer(route, body), context)
                 return
             answer = Representation(document.whole())
             self._cache.put(route.path, body, answer)
-        await context.answer(answer)
+        await self._answer(answer, context)
+
+    async def _answer(self, answer: Representation, context: RequestContext) -> None:
+        with self._compute.held.answering(context.client, len(answer.body)):
+            await context.answer(answer)
 
     async def _question_later(self, route: PostRoute, context: RequestContext, body: bytes) -> None:
         """Answer with the state of a study of one answer, once the request has been read."""
@@ -201,7 +207,7 @@ class Dispatcher:
         self, document: Document, etag: bytes, context: RequestContext, headers: Sequence[Header] = (JSON,)
     ) -> None:
         self._metrics.samples.inc(document.numbers)
-        with self._compute.held.holding(context.client, document.memory):
+        with self._compute.held.answering(context.client, document.memory):
             await context.stream(document.pieces(), etag, self._settings.stalled_seconds, headers, self._turns)
 
     async def _page(self, route: GetRoute, context: RequestContext) -> None:
@@ -210,13 +216,17 @@ class Dispatcher:
         reply = route.content()
         if b"accept" in context.headers:
             negotiated(context.headers[b"accept"], (route.media_type,))
-        await context.page(
-            reply.body,
-            reply.media_type,
-            reply.status,
-            kept=route.fixed,
-            frame_ancestors=self._settings.frame_ancestors,
-        )
+        held = self._compute.held
+        if len(reply.body) > BUFFERED:
+            held.require_share(context.client)
+        with held.answering(context.client, len(reply.body)):
+            await context.page(
+                reply.body,
+                reply.media_type,
+                reply.status,
+                kept=route.fixed,
+                frame_ancestors=self._settings.frame_ancestors,
+            )
 
     async def unknown_host(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request to a name that is not the service's (a page may have its own name lead to this address)."""

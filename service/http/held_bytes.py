@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import contextmanager
 
 from service.problems import Refusal
@@ -19,11 +19,18 @@ class HeldBytes:
     ----------
     most : int
         Bytes of all clients above which no more is taken.
+
+    Attributes
+    ----------
+    freed : callable
+        Called when a client has more room for answers.
     """
 
     def __init__(self, most: int) -> None:
-        self._most = most
+        self._most, self._own = most, int(SHARE_OF_ONE * most)
+        self.freed: Callable[[], None] = lambda: None
         self._of: Counter[Hashable] = Counter()
+        self._answers: Counter[Hashable] = Counter()
 
     @property
     def total(self) -> int:
@@ -45,14 +52,38 @@ class HeldBytes:
         finally:
             self.add(client, -count)
 
+    def add_answer(self, client: Hashable, count: int) -> None:
+        """Count bytes of a client's answers, which are among what it holds; negative ones are let go."""
+        self.add(client, count)
+        self._answers[client] += count
+        if not self._answers[client]:
+            del self._answers[client]
+        if count < 0:
+            self.freed()
+
+    @contextmanager
+    def answering(self, client: Hashable, count: int) -> Iterator[None]:
+        """Count the bytes of an answer as long as its client reads it."""
+        self.add_answer(client, count)
+        try:
+            yield
+        finally:
+            self.add_answer(client, -count)
+
+    def may_answer(self, client: Hashable, count: int) -> bool:
+        """Return whether a client may hold another answer: any where it has none, others within its share."""
+        return client not in self._answers or self._answers[client] + count <= self._own
+
+    def require_share(self, client: Hashable, headers: Sequence[tuple[str, str]] = ()) -> None:
+        """Refuse more of a client that holds more than its share (429)."""
+        if self._of[client] > self._own:
+            detail = f"requests and unread answers of this client take more than {self._own} bytes, its share"
+            raise Refusal("too-busy", f"{detail} of the limit max_held_bytes", headers=headers, retry_after=1.0)
+
     def require_room(self, client: Hashable, *, close: bool = False) -> None:
         """Refuse more of a client (429); the connection is closed if it is to `close`."""
-        own = int(SHARE_OF_ONE * self._most)
-        if self._of[client] > own:
-            detail = f"requests and unread answers of this client take more than {own} bytes, its share of the limit"
-        elif self.total > self._most:
-            detail = f"requests and unread answers take more than {self._most} bytes, the limit"
-        else:
-            return
         headers = (("Connection", "close"),) if close else ()
-        raise Refusal("too-busy", f"{detail} max_held_bytes", headers=headers, retry_after=1.0)
+        self.require_share(client, headers)
+        if self.total > self._most:
+            detail = f"requests and unread answers take more than {self._most} bytes, the limit max_held_bytes"
+            raise Refusal("too-busy", detail, headers=headers, retry_after=1.0)

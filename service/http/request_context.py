@@ -21,6 +21,10 @@ from service.problems import MEDIA_TYPE, Problem
 SHORT = 1_024
 """Bytes below which a piece of a stream is sent together with the next."""
 
+BUFFERED = 65_536
+"""Bytes of a response that the server takes at once, whether its client reads or not: the high-water mark of the
+transports of asyncio."""
+
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
 VARY: Header = (b"vary", b"accept")
 _VARY_ENCODING: Header = (b"vary", b"accept-encoding")
@@ -256,7 +260,13 @@ class RequestContext:
 
     async def _respond(self, status: int, body: bytes, headers: Iterable[Header]) -> None:
         await self._start(status, headers)
-        await self._send({"type": "http.response.body", "body": b"" if self.scope["method"] == "HEAD" else body})
+        if self.scope["method"] == "HEAD":
+            body = b""
+        if len(body) > BUFFERED:
+            # The next message is accepted when the client has taken most of this one.
+            await self._send({"type": "http.response.body", "body": body, "more_body": True})
+            body = b""
+        await self._send({"type": "http.response.body", "body": body})
         self.close(status)
 
     async def _start(self, status: int, headers: Iterable[Header]) -> None:

@@ -15,10 +15,13 @@ import pytest
 from service.app import Service
 from service.http.keys import new_key
 from tests.service.conftest import PATIENCE, client_of, inline_toys, toy_service
-from tests.service.http.test_dispatch import JSON, scope, sending
+from tests.service.http.test_dispatch import JSON, receiving, scope, sending
 from tests.service.toy_routes import GOOD
 
 pytestmark = pytest.mark.anyio
+
+PAGE = "/page/vendor/swagger-ui-bundle.js"
+"""A large one."""
 
 LARGE = GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 500_000}}
 
@@ -302,6 +305,72 @@ async def test_a_client_with_too_many_questions_waiting_is_refused_another(monke
         assert (await client.post("/v1/toy", json=GOOD)).status_code == 200
         assert sorted(response.status_code for response in await asyncio.gather(*tasks)) == [200] * 3 + [429] * 9
         assert running.compute.processes.waiting == 0
+
+
+async def test_answers_that_one_client_does_not_read_refuse_no_other() -> None:
+    """Several that are computed at the same time: each has 16 MB, of which one client may hold 10."""
+    running = toy_service(compute_workers=2, max_held_bytes=20_000_000)
+    async with running.lifespan():
+        await until(lambda: running.warm)
+        read = asyncio.Event()
+        body = orjson.dumps(LARGE)
+
+        async def post(address: str, reads: asyncio.Event) -> bytes:
+            received: list[bytes] = []
+
+            async def send(message: dict[str, Any]) -> None:
+                if message["type"] == "http.response.start":
+                    assert message["status"] == 200
+                else:
+                    await reads.wait()
+                    received.append(message["body"])
+
+            asked = scope("POST", "/v1/toy", JSON) | {"client": (address, 1)}
+            await running(asked, receiving(body), send)
+            return b"".join(received)
+
+        many = [asyncio.create_task(post("10.0.0.1", read)) for _ in range(4)]
+        await until(lambda: running.compute.held.total > 10_000_000 and running.compute.processes.unread)
+        assert running.compute.held.total < 20_000_000
+        eager = asyncio.Event()
+        eager.set()
+        answer = await post("10.0.0.2", eager)
+        assert len(orjson.loads(answer)["time"]) == 500_000
+        assert not any(task.done() for task in many)
+        read.set()
+        assert await asyncio.gather(*many) == [answer] * 4
+        assert running.compute.held.total == 0
+
+
+async def test_small_questions_and_pages_of_a_client_that_reads_nothing_are_refused() -> None:
+    running = toy_service(compute_workers=1, max_held_bytes=1_000_000)
+    async with running.lifespan(), client_of(running) as client:
+        await until(lambda: running.warm)
+        with running.compute.held.answering("127.0.0.1", 500_001):
+            for response in (await client.post("/v1/toy", json=GOOD), await client.get(PAGE)):
+                assert (response.status_code, response.json()["code"]) == (429, "too-busy")
+            assert (await client.get("/healthz")).status_code == 200
+        with running.compute.held.answering("127.0.0.2", 500_001):
+            for response in (await client.post("/v1/toy", json=GOOD), await client.get(PAGE)):
+                assert response.status_code == 200
+
+
+async def test_a_page_is_counted_until_it_is_read(service: Service) -> None:
+    read = asyncio.Event()
+    held: list[int] = []
+
+    async def send(message: dict[str, Any]) -> None:
+        held.append(service.compute.held.total)
+        if message["type"] == "http.response.body" and not message.get("more_body"):
+            # uvicorn accepts nothing more until the client has taken most of what it has.
+            await read.wait()
+
+    task = asyncio.create_task(service(scope("GET", PAGE, {}), receiving(b""), send))
+    await until(lambda: len(held) == 3)
+    assert service.compute.held.total > 65_536
+    read.set()
+    await task
+    assert service.compute.held.total == 0
 
 
 async def test_one_clients_backlog_refuses_no_other(client: httpx.AsyncClient) -> None:

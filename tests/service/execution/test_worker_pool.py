@@ -28,6 +28,7 @@ from service.execution.job import DeadlineExceeded, Job, NoProcess, SliceUsed, S
 from service.execution.process_starter import ProcessStarter
 from service.execution.worker_pool import Processes
 from service.execution.worker_process import Process
+from service.http.held_bytes import HeldBytes
 from tests.service.conftest import PATIENCE
 from tests.service.toy_processes import framed, main
 
@@ -47,16 +48,21 @@ def place(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def made(place: Path, size: int, lost: list[int]) -> Processes:
+PLENTY = 100_000_000
+"""Bytes that may be held where that is not what is tested."""
+
+
+def made(place: Path, size: int, lost: list[int], most_held: int = PLENTY) -> Processes:
+    held = HeldBytes(most_held)
     return Processes(
-        size, main, (str(place),), "tests.service.toy_processes", lost.append, slice_seconds=inf, reserve=0
+        size, main, (str(place),), "tests.service.toy_processes", lost.append, held=held, slice_seconds=inf, reserve=0
     )
 
 
 @asynccontextmanager
-async def warm(place: Path, size: int = 1) -> AsyncIterator[tuple[Processes, list[int]]]:
+async def warm(place: Path, size: int = 1, most_held: int = PLENTY) -> AsyncIterator[tuple[Processes, list[int]]]:
     lost: list[int] = []
-    processes = made(place, size, lost)
+    processes = made(place, size, lost, most_held)
     try:
         async with asyncio.timeout(PATIENCE):
             await processes.start()
@@ -76,6 +82,7 @@ async def classes(place: Path) -> AsyncIterator[tuple[Processes, list[bool]]]:
         "tests.service.toy_processes",
         lambda code: None,
         lambda: moved.append(True),
+        held=HeldBytes(PLENTY),
         slice_seconds=0.01,
     )
     try:
@@ -155,6 +162,56 @@ def receive(process: Process, data: bytes) -> None:
 def holds_together(processes: Processes) -> bool:
     """Return whether all processes are there and have nothing to do."""
     return processes.ready and not any(processes.pids.values())
+
+
+class TestUnreadAnswers:
+    """Each answer has 400 bytes; one client may hold 500."""
+
+    async def test_those_beyond_the_share_of_a_client_stay_in_their_processes(self, place: Path) -> None:
+        async with warm(place, 3, 1000) as (processes, _):
+            jobs = [ask(processes, b"echo " + bytes(400)) for _ in range(3)]
+            await until(lambda: processes.unread == 2)
+            received = next(job for job in jobs if job.reply.done())
+            assert await received.reply == bytes(400)
+            # A question of another client has its answer; nothing more of the first one is begun.
+            later = ask(processes, b"echo later")
+            assert await ask(processes, b"echo " + b"b" * 400, client="other").reply == b"b" * 400
+            assert not later.begun
+            for left in (1, 0):
+                processes.drop(received)
+                await until(
+                    lambda left=left: processes.unread == left and sum(job.reply.done() for job in jobs) == 3 - left
+                )  # type: ignore[misc]
+                jobs.remove(received)
+                received = next(job for job in jobs if job.reply.done())
+                jobs.append(later)
+            processes.drop(received)
+            assert await later.reply == b"later"
+            await until(lambda: holds_together(processes))
+
+    async def test_one_whose_client_leaves_is_dropped_with_its_process(self, place: Path) -> None:
+        async with warm(place, 2, 1000) as (processes, lost):
+            jobs = [ask(processes, b"echo " + bytes(400)) for _ in range(2)]
+            await until(lambda: processes.unread == 1)
+            for job in sorted(jobs, key=lambda job: job.reply.done()):
+                processes.drop(job)
+            assert processes.unread == 0
+            await until(lambda: holds_together(processes))
+            assert await ask(processes, b"echo a").reply == b"a"
+            assert not lost
+
+    async def test_one_whose_process_dies_is_lost(self, place: Path) -> None:
+        async with warm(place, 2, 1000) as (processes, _):
+            jobs = [ask(processes, b"last " + bytes(4_000_000)) for _ in range(2)]
+            await until(lambda: processes.unread == 1)
+            waiting, received = sorted(jobs, key=lambda job: job.reply.done())
+            process = processes.process_of(waiting)
+            assert process is not None
+            kill_unnoticed(process.handle.pid or 0)
+            processes.drop(received)
+            with pytest.raises(WorkerDied):
+                await waiting.reply
+            await until(lambda: holds_together(processes))
 
 
 class TestReady:
@@ -262,8 +319,12 @@ class TestMessages:
     @settings(deadline=None, derandomize=True)
     def test_messages_are_heard_however_they_are_cut(self, messages: list[bytes], cuts: list[int]) -> None:
         heard: list[bytes] = []
+        announced: list[int] = []
 
         class Pool:
+            def announced(self, process: Process, length: int) -> None:
+                announced.append(length)
+
             def heard(self, process: Process, message: memoryview | None) -> None:
                 heard.append(bytes(message or b""))
 
@@ -279,6 +340,7 @@ class TestMessages:
                 count += whole <= end
             assert len(heard) == count
         assert heard == messages
+        assert announced == [len(message) for message in messages if message]
 
     async def test_requests_and_replies_of_any_size_come_through_whole(self, place: Path) -> None:
         async with warm(place) as (processes, _):

@@ -23,3 +23,20 @@ def test_one_client_may_hold_half_and_refuses_nobody() -> None:
         assert caught.value.problem.headers == (("Connection", "close"),)
     held.require_room("fourth")
     assert held.total == 50
+
+
+def test_a_client_may_have_any_answer_and_others_within_its_share() -> None:
+    held = HeldBytes(100)
+    freed: list[int] = []
+    held.freed = lambda: freed.append(held.total)
+    held.add("reads", 40)
+    assert held.may_answer("reads", 200)
+    with held.answering("reads", 30):
+        assert held.may_answer("reads", 20)
+        assert not held.may_answer("reads", 21)
+        assert held.may_answer("other", 200)
+        held.require_share("other")
+        with pytest.raises(Refusal, match="its share of the limit max_held_bytes"):
+            held.require_share("reads")
+    assert freed == [40]
+    held.require_share("reads")
