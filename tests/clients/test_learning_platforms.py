@@ -381,7 +381,6 @@ ATTACKS = {
     "a module for the grader": "open('{run}/json.py', 'w').write('raise SystemExit')",
     "the folder of the run": "os.rename('{run}', '{run}-old')",
     "a link into the folder of the run": "os.link('{run}/prog.py', 'mine')",
-    "another file system over the run": "if os.system('mount -t tmpfs none {run}'): raise PermissionError",
 }
 
 
