@@ -192,7 +192,8 @@ def impact(
     changes: dict[int, list[Ball]] = {}
     together, in_turn, shared, driven = False, False, set[int](), ZERO
     for group in found.clusters():
-        if not approaching(unilateral, group, q, v):
+        # What has stayed closed until now may be off by rounding on a track: it does not strike.
+        if not (approaching(unilateral, group, q, v) if settled is None else settled.changes.keys() & set(group)):
             continue
         # One after another any number may act.
         if simultaneous != "in order" and not is_smooth(unilateral, group):

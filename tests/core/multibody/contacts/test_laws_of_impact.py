@@ -126,3 +126,30 @@ def test_orders_of_many_contacts_that_agree_are_decided() -> None:
     answer = solve_scene(read(scene), [1.0])
     found = [float(column(answer, f"b{i}.velocity").values[0, 0]) for i in range(6)]
     assert found == pytest.approx([-3, -2, -1, 1, 2, 3], abs=1e-15)
+
+
+def test_what_slides_on_while_something_else_bounces_takes_no_part() -> None:
+    """A ladder slides down a wall, and nothing but a damper joins it to a ball that bounces."""
+    scene: dict[str, Any] = {
+        "gravity": [0, -10],
+        "impacts": "stronge",
+        "bodies": {
+            "ball": {"mass": 1, "at": [-3, 0.2]},
+            "ladder": {
+                "mass": 1,
+                "inertia": "1/10",
+                "at": ["-1/4", "sqrt(3)/4"],
+                "angle": "pi/3",
+                "places": {"foot": [-0.5, 0], "head": [0.5, 0]},
+            },
+        },
+        "connections": [
+            {"kind": "contact", "name": "pad", "place": "ball", "on": {"at": [0, 0]}, "restitution": 0.8},
+            {"kind": "contact", "name": "floor", "place": "ladder.foot", "on": {"at": [0, 0]}, "friction": 0.1},
+            {"kind": "contact", "name": "wall", "place": "ladder.head", "on": {"at": [0, 0], "slope": "pi/2"}},
+            {"kind": "damper", "name": "damper", "a": "ball", "b": "ladder", "coefficient": 2},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 0.3])
+    assert answer.problem is None
+    assert [event.kind for event in answer.events] == ["touch"]
