@@ -587,3 +587,44 @@ def test_a_sketch_need_not_fit_what_begins_later() -> None:
     bodies = {"bob": {"mass": 1, "at": ["sqrt(3)", 0.9]}}
     found = solved([1.0], bodies=bodies, connections=[track, rod], assemble="nearest")
     np.testing.assert_allclose(column(found, "bob.position"), [[np.sqrt(3.0), 1.0]], rtol=1e-14)
+
+
+def test_what_begins_may_leave_open_what_happens_then() -> None:
+    # Both feet of a plank that slides are pressed to the ground by the jerk of a rod: which strikes first is open.
+    found = solved(
+        [1.0],
+        gravity=[0, -10],
+        bodies={
+            "plank": {
+                "mass": 1,
+                "inertia": 1,
+                "at": [0, 1],
+                "velocity": [1, 0],
+                "places": {"left": [-0.5, -1], "right": [0.5, -1], "top": [0.2, 1]},
+            }
+        },
+        connections=[
+            {"kind": "contact", "name": "left", "place": "plank.left", "on": {"at": [0, 0]}, "restitution": 0.5},
+            {"kind": "contact", "name": "right", "place": "plank.right", "on": {"at": [0, 0]}, "restitution": 0.5},
+            {"kind": "rod", "name": "rod", "a": "plank.top", "b": [-1, -1], "from": 0.5},
+        ],
+    )
+    assert happened(found) == [("begin", "rod"), ("simultaneous-impacts", "left, right")]
+
+
+def test_what_pulls_at_corners_is_followed_across_a_beginning() -> None:
+    # How quick a motion is where something begins depends on attitudes: of the corners that attract one another here.
+    rods = {
+        name: {"mass": 1, "inertia": "1/12", "at": [x, 0], "angular_velocity": 1, "places": {"end": ["1/2", 0]}}
+        for name, x in (("a", 0), ("b", 5))
+    }
+    found = solved(
+        [0.5],
+        bodies=rods,
+        connections=[
+            {"kind": "inverse-square", "name": "pull", "a": "a.end", "b": "b.end", "strength": 1},
+            {"kind": "damper", "name": "damper", "a": "a", "b": "b", "coefficient": 2, "from": 0.25},
+        ],
+    )
+    assert found.problem is None
+    assert happened(found) == [("begin", "damper")]
