@@ -9,16 +9,15 @@ from functools import partial
 
 import numpy as np
 
-from core.multibody.audit.bodies import Reader
-from core.multibody.audit.definitions import description_of
 from core.multibody.language.scene import Scene
 from tests.oracles.plain_engine.coordinates import Floats, State
 from tests.oracles.plain_engine.decisions import decide
 from tests.oracles.plain_engine.impacts import impact
 from tests.oracles.plain_engine.mechanism import Mechanism, NotSupported, Undecided
-from tests.oracles.plain_engine.modes import Kind
+from tests.oracles.plain_engine.modes import OPEN, Kind
 from tests.oracles.plain_engine.phase import Inconsistent, Key, Phase
 from tests.oracles.plain_engine.readouts import forces_of, of_chains
+from tests.oracles.plain_engine.stages import Stages
 from tests.oracles.plain_engine.start import TOUCHING, start
 from tests.oracles.plain_engine.steps import Crossing, Stepper
 
@@ -34,6 +33,8 @@ LISTED = 12
 """Impacts of one contact in a row before it may come to rest."""
 FEW = 3
 """The same of bounces a tenth as fast, which are hardly higher than gaps are known."""
+SOON = 1e-4
+"""Time (s) after which a quantity that has a value at the start of a phase shows on which side of it it goes on."""
 APPROACHES = 1e-9
 """Share of the largest rate at which a gap closes that is none."""
 
@@ -91,21 +92,15 @@ def follow(
     NotSupported
         By the name of what is not.
     """
-    found = description_of(scene)
-    if found.undefined:
-        raise NotSupported("; ".join(sorted(set(found.undefined.values()))))
-    mechanism = Mechanism(Reader(scene), found.connections)
-    if mechanism.chains and any(connection.everywhere for connection in scene.connections):
-        raise NotSupported("what acts everywhere does so on the links of a chain, too")
-    mechanism.gravity = mechanism.gravity * heavier
-    return _Run(mechanism, sorted(times), tolerance, faster).go()
+    return _Run(Stages(scene, faster, heavier), sorted(times), tolerance, faster).go()
 
 
 class _Run:
-    def __init__(self, mechanism: Mechanism, times: list[float], tolerance: float, faster: float) -> None:
-        self.mechanism, self.times, self.tolerance = mechanism, times, tolerance
-        self.motion = Motion(mechanism)
-        self.state, self.touching = start(mechanism, faster)
+    def __init__(self, stages: Stages, times: list[float], tolerance: float, faster: float) -> None:
+        self.stages, self.times, self.tolerance = stages, times, tolerance
+        self.mechanism = stages.mechanism
+        self.motion = Motion(self.mechanism)
+        self.state, self.touching = start(self.mechanism, faster)
         self.now = 0.0
         self.phase: Phase | None = None
         self.fastest = 0.0
@@ -119,9 +114,15 @@ class _Run:
             with np.errstate(all="ignore"):
                 while len(self.motion.events) <= MOST_EVENTS:
                     self._collide()
+                    if self._change():
+                        continue
                     phase = decide(self.mechanism, self.state, self.touching, self._probe, self.fastest)
                     self._tell(phase)
-                    self.phase, self.state = phase, Stepper(phase, self.tolerance).project(self.state)
+                    self.phase = phase
+                    self._see_values(phase)
+                    if self._change():
+                        continue
+                    self.state = Stepper(phase, self.tolerance).project(self.state)
                     self._sample(phase)
                     if self.now >= end or not self._advance(phase, end):
                         return self.motion
@@ -131,6 +132,38 @@ class _Run:
         except (Inconsistent, np.linalg.LinAlgError):
             raise NotSupported("no accelerations go with what is held") from None
         raise NotSupported("more events than are followed")
+
+    def _change(self) -> bool:
+        """Let begin, end and strike what does so now; return whether there is any of that."""
+        due = self.stages.due(self.now, self.motion.events)
+        if not due:
+            return False
+        self.motion.events.extend(Event(entry.what, entry.name, self.now) for entry in due)
+        before = {one.name: i for i, one in enumerate(self.mechanism.one_sided)}
+        self.state = self.stages.changed(self.state, due)
+        self.mechanism = self.motion.mechanism = self.stages.mechanism
+        now = {one.name: i for i, one in enumerate(self.mechanism.one_sided)}
+        gaps, _ = self.mechanism.gap_rates(self.state)
+        begun = [i for name, i in now.items() if name not in before]
+        if any(gaps[i] < -TOUCHING for i in begun):
+            raise Undecided("cannot-begin", [entry.name for entry in due])
+        touched = {i for name, i in now.items() if before.get(name) in self.touching}
+        self.touching = sorted(touched | {i for i in begun if gaps[i] < TOUCHING})
+        if self.phase is not None:
+            modes = [
+                self.phase.modes[before[one.name]] if one.name in before else OPEN for one in self.mechanism.one_sided
+            ]
+            self.phase = Phase(self.mechanism, modes)
+        self.bounces = {}
+        return True
+
+    def _see_values(self, phase: Phase) -> None:
+        """Find on which sides of values quantities are that are waited for."""
+        waiting = self.stages.timetable.values()
+        if waiting:
+            after = self._probe(phase, self.state, SOON)
+            for entry in waiting:
+                entry.begin(phase, self.state, after)
 
     def _probe(self, phase: Phase, state: State, time: float) -> State:
         return Stepper(phase, 1e-11).to(state, 0.0, time)
@@ -204,7 +237,10 @@ class _Run:
             slack = {mechanism.one_sided[i].name for i in opened}
             spans = enumerate(mechanism.spans(state))
             found |= {("span", k): span - SHORT for k, (name, span, _) in spans if name not in slack}
-        if kind not in ("rank", "span"):
+        if kind in (None, "value"):
+            waiting = self.stages.timetable.values()
+            found |= {("value", k): entry.above(phase, state) for k, entry in enumerate(waiting)}
+        if kind not in ("rank", "span", "value"):
             # Where connections lose their rank there may be no forces.
             with suppress(Inconsistent):
                 found |= of_chains(phase, state) | self._forced(phase, state)
@@ -221,7 +257,8 @@ class _Run:
         """Go to the next event; return whether there is one."""
         figures = partial(self._figures, phase)
         stepper = Stepper(phase, self.tolerance)
-        for found in stepper.until(self.state, self.now, end, figures, self.times, self._first(phase)):
+        stop = min(end, self.stages.timetable.next_time())
+        for found in stepper.until(self.state, self.now, stop, figures, self.times, self._first(phase)):
             if not isinstance(found, Crossing):
                 self.now, self.state = found
                 self._sample(phase)
@@ -242,12 +279,19 @@ class _Run:
             if kind == "span":
                 self.motion.ended = self._vanished(stepper, i)
                 return False
-            gaps, _ = self.mechanism.gap_rates(self.state)
-            met = [k for k, gap in enumerate(gaps) if gap < TOUCHING]
-            self.touching = sorted({*phase.closed, *met, *([i] if kind == "gap" else [])})
+            if kind == "value":
+                self.stages.timetable.values()[i].pass_through()
+            self._touch(phase, [i] if kind == "gap" else [])
             self._require_apart()
             return True
-        return False
+        self._touch(phase, [])
+        return stop < end
+
+    def _touch(self, phase: Phase, also: list[int]) -> None:
+        """Find what touches at the end of a phase."""
+        gaps, _ = self.mechanism.gap_rates(self.state)
+        met = [k for k, gap in enumerate(gaps) if gap < TOUCHING]
+        self.touching = sorted({*phase.closed, *met, *also})
 
     def _require_apart(self) -> None:
         """Refuse two ends of outlines that meet: each is nearest to the other, and one contact would count twice."""

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from tests.oracles.plain_engine.coordinates import State
+from tests.oracles.plain_engine.coordinates import Floats, State
+from tests.oracles.plain_engine.mechanism import Mechanism
 from tests.oracles.plain_engine.phase import Key, Phase
 
 SPANNED = 1e-7
@@ -63,4 +65,33 @@ def of_chains(phase: Phase, state: State) -> dict[Key, float]:
         found["end-of-chain", k] = float(min(first, last))
         pressed = chain.derived(placement, motion, forces)[f"{chain.name}.normal"]
         found["lift-off", k] = float(pressed) / (1.0 + sum(abs(forces[name]) for name in chain.forces))
+    return found
+
+
+def columns_of(mechanism: Mechanism, state: State) -> dict[str, Floats]:
+    """Return what every body does, by the names of the columns of an answer."""
+    coordinates = mechanism.coordinates
+    velocity, spin = coordinates.spread(state.rates)
+    found: dict[str, Floats] = {}
+    for i, name in enumerate(coordinates.names):
+        found[f"{name}.position"], found[f"{name}.velocity"] = state.position[i], velocity[i]
+        if not coordinates.rigid[i]:
+            continue
+        if coordinates.dimension == 2:
+            found[f"{name}.angle"], found[f"{name}.angular_velocity"] = state.turn[i : i + 1], spin[i : i + 1]
+        else:
+            found[f"{name}.attitude"] = Rotation.from_matrix(state.turn[i]).as_quat(canonical=True, scalar_first=True)
+            found[f"{name}.angular_velocity"] = state.turn[i].T @ spin[i]
+            found[f"{name}.angular_velocity_in_space"] = spin[i]
+    return found
+
+
+def quantities_of(mechanism: Mechanism, state: State) -> dict[str, float]:
+    """Return the same number by number: components have the ending of their axis."""
+    found: dict[str, float] = {}
+    for name, value in columns_of(mechanism, state).items():
+        if len(value) == 1:
+            found[name] = float(value[0])
+        elif not name.endswith(".attitude"):
+            found |= {f"{name}.{axis}": float(x) for axis, x in zip("xyz", value, strict=False)}
     return found

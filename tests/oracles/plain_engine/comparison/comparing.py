@@ -14,15 +14,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from core.errors import MechanicsError
 from core.multibody.answer import SceneSolution
 from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
-from tests.oracles.plain_engine.coordinates import State
 from tests.oracles.plain_engine.mechanism import NotSupported
 from tests.oracles.plain_engine.motion import Event, Motion, follow
+from tests.oracles.plain_engine.readouts import columns_of
 
 MOVED = 1e-10
 TIGHT, LOOSE = 1e-12, 1e-10
@@ -222,7 +221,7 @@ def _samples(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
         t = float(time)
         if t > until or t not in first.states or t not in moved.states or any(abs(t - x) < 1e-6 for x in events):
             continue
-        figures, other = (columns_of(x, x.states[t]) for x in (first, moved))
+        figures, other = (columns_of(mechanism, x.states[t]) for x in (first, moved))
         for name, value in figures.items():
             column = trajectory.columns.get(name)
             if column is None:
@@ -258,21 +257,3 @@ def _samples(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
 def _size(figures: Mapping[str, Any], name: str) -> float:
     suffix = name.rsplit(".", 1)[1]
     return max(float(np.max(np.abs(value))) for key, value in figures.items() if key.endswith(suffix)) or 1.0
-
-
-def columns_of(motion: Motion, state: State) -> dict[str, Any]:
-    """Return what every body does, by the names of the columns of an answer."""
-    coordinates = motion.mechanism.coordinates
-    velocity, spin = coordinates.spread(state.rates)
-    found: dict[str, Any] = {}
-    for i, name in enumerate(coordinates.names):
-        found[f"{name}.position"], found[f"{name}.velocity"] = state.position[i], velocity[i]
-        if not coordinates.rigid[i]:
-            continue
-        if coordinates.dimension == 2:
-            found[f"{name}.angle"], found[f"{name}.angular_velocity"] = state.turn[i : i + 1], spin[i : i + 1]
-        else:
-            found[f"{name}.attitude"] = Rotation.from_matrix(state.turn[i]).as_quat(canonical=True, scalar_first=True)
-            found[f"{name}.angular_velocity"] = state.turn[i].T @ spin[i]
-            found[f"{name}.angular_velocity_in_space"] = spin[i]
-    return found

@@ -2,8 +2,9 @@
 
     python -m tests.oracles.plain_engine.comparison.run 1000 0
 
-compares 1000 scenes from seed 0 on, one after another. The figures are written to benchmarks/results/plain_engine.json:
-counts by class, with a seed that shows each.
+compares 1000 scenes from seed 0 on, one after another; with `changes` in front of the numbers, scenes in which
+connections begin and end and blows fall. The figures are written to benchmarks/results/plain_engine.json, or another
+file: counts by class, with a seed that shows each.
 """
 
 from __future__ import annotations
@@ -12,12 +13,15 @@ import json
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from tests.oracles.plain_engine.comparison.changing_scenes import changing_scene_of
 from tests.oracles.plain_engine.comparison.comparing import Verdict, compared
+from tests.oracles.plain_engine.comparison.drawing import Json
 from tests.oracles.plain_engine.comparison.scenes import scene_of
 
 RESULTS = Path(__file__).parents[4] / "benchmarks" / "results"
@@ -40,7 +44,9 @@ def classes_of(verdict: Verdict) -> str:
     return ""
 
 
-def figures(count: int, first: int = 0, out: Path | None = None) -> dict[str, Any]:
+def figures(
+    count: int, first: int = 0, out: Path | None = None, source: Callable[[int], tuple[Json, list[float]]] = scene_of
+) -> dict[str, Any]:
     """Return counts by class of many scenes, and write them as they grow."""
     total: Counter[str] = Counter()
     seeds: dict[str, list[int]] = {}
@@ -48,7 +54,7 @@ def figures(count: int, first: int = 0, out: Path | None = None) -> dict[str, An
     begun = time.perf_counter()
     found: dict[str, Any] = {}
     for seed in range(first, first + count):
-        scene, times = scene_of(seed)
+        scene, times = source(seed)
         try:
             verdict = compared(scene, times)
             name = classes_of(verdict)
@@ -93,9 +99,13 @@ def catalogue() -> dict[str, str]:
     return found
 
 
+SOURCES = {"scenes": scene_of, "changes": changing_scene_of}
+
 if __name__ == "__main__":
-    if sys.argv[1] == "catalogue":
+    arguments = sys.argv[1:]
+    if arguments == ["catalogue"]:
         print(json.dumps(catalogue(), indent=1))  # noqa: T201
     else:
-        target = RESULTS / (sys.argv[3] if len(sys.argv) > 3 else "plain_engine.json")
-        figures(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0, target)
+        drawn = SOURCES[arguments.pop(0) if arguments[0] in SOURCES else "scenes"]
+        target = RESULTS / (arguments[2] if len(arguments) > 2 else "plain_engine.json")
+        figures(int(arguments[0]), int(arguments[1]) if len(arguments) > 1 else 0, target, drawn)
