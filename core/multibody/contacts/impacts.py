@@ -316,7 +316,8 @@ def _group(
         "several contacts take impulses at once, and rigid bodies do not say in which order",
         names,
         tuple(
-            {"order": described} | {unilateral[i].name: _gap_afterwards(unilateral[i], normal[i], then) for i in group}
+            {"order": described}
+            | {unilateral[i].name: _gap_afterwards(unilateral[i], normal[i], then, rates) for i in group}
             for described, then in different
         ),
         'the order in which they happen, as "order" of the contacts, equal where they act together',
@@ -421,10 +422,10 @@ def _rates(
     return rates
 
 
-def _gap_afterwards(one: Unilateral, line: int, after: RatesByLine) -> str:
+def _gap_afterwards(one: Unilateral, line: int, after: RatesByLine, before: RatesByLine) -> str:
     """Return in words how a gap changes after an impact; what is left of a zero by rounding is zero."""
     rate = float(after[line])
-    if abs(rate) <= LIMIT * max(abs(float(x)) for x in after.values()):
+    if abs(rate) <= LIMIT * max(abs(float(x)) for x in (*after.values(), *before.values())):
         return "stays closed"
     return f"opens at {rate:.10g} {'rad/s' if one.unit == 'N m' else 'm/s'}"
 

@@ -272,6 +272,25 @@ def test_undecided_candidates_say_nothing_of_rounding() -> None:
     assert not any("e-" in word for word in words)
 
 
+def test_where_everything_stops_candidates_say_nothing_of_rounding_either() -> None:
+    # Boxes meet with level faces; where both corners act together nothing moves on. A guide beside them rounds places.
+    box = {"mass": 1, "shape": {"kind": "box", "width": 0.4, "height": 0.2}}
+    scene = {
+        "bodies": {
+            "first": {**box, "at": [-0.5, 0], "velocity": [1, 0]},
+            "second": {**box, "at": [0.2, 0], "velocity": [-1, 0]},
+        },
+        "connections": [
+            {"kind": "contact", "name": "meet", "a": "first", "b": "second"},
+            {"kind": "damper", "name": "d", "a": "first", "b": [-3, 0], "coefficient": 0.1},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.5])
+    assert answer.problem is not None
+    together = next(one for one in answer.problem.candidates if one["order"] == "together")
+    assert {value for name, value in together.items() if name != "order"} == {"stays closed"}
+
+
 def test_more_events_than_are_followed_end_the_answer_and_lose_nothing() -> None:
     """An elastic ball bounces every 2 sqrt(2 h/g) s for ever: 500 impacts are followed, and what they say is kept."""
     scene = json.loads(BALL)
