@@ -19,7 +19,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.definition import Touch
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.energy import kinetic
-from core.multibody.audit.failure import MARGIN, Ledger
+from core.multibody.audit.failure import MARGIN, NOISE, Ledger
 from core.multibody.audit.newton import Acceleration, Freedoms, balance
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement, Pose, Twist, Undefined, moved
 from core.multibody.audit.samples import ATTITUDE, POSITION, SPIN, VELOCITY, Samples
@@ -130,8 +130,13 @@ class Impacts:
         tilt = tilt + (spun * self.step) ** 3
         momenta, speed = np.zeros(len(times)), np.zeros(len(times))
         arm = max((one.arm + one.reach for one in description.connections), default=0.0)
+        # What is at rest is so to the noise of what holds it, however small that is said to be.
+        turning = NOISE * NEAR / self.step
         for name, body in description.bodies.items():
-            moved, turned = (before.unsure[name][k] + after.unsure[name][k] for k in (0, 1))
+            moved, turned = (
+                before.unsure[name][k] + after.unsure[name][k] + noise
+                for k, noise in enumerate((description.extent * turning, turning))
+            )
             momenta = momenta + body.mass * moved + body.moment * turned
             speed = speed + moved + arm * turned
         known = (KNOWN + MARGIN * tilt) * size + MARGIN * momenta
