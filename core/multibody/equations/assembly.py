@@ -22,8 +22,9 @@ _NEWTON_STEPS_OF_POSITIONS = 40
 """Newton steps of the positions: quadratic convergence takes three from a mismatch of 1e-6. The others are for
 singular places, where every step halves what is left."""
 
-_APART = 64.0
-"""How much more than places miss their measures lines may differ that depend on one another on them."""
+_APART = 0.75
+"""Power of the share by which places miss their measures up to which lines depend on one another on them: redundant
+ones differ by a multiple of that share (the power one), those of a singular place by its square root."""
 
 
 def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
@@ -83,7 +84,7 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
         residuals = [evaluated(row.measure or {}, table.q) for row in rows]
         # Lines are known as well as the measures are met: rows that are redundant there differ by that much here.
         missed = max((float(abs(x) / y) for x, y in zip(residuals, terms, strict=True) if y > 0), default=0.0)
-        chosen = independent(lines, _APART * missed)
+        chosen = independent(lines, missed**_APART)
         step = least_change(table, [lines[i] for i in chosen], [residuals[i] for i in chosen])
         table.q = _followed(table, [q - d for q, d in zip(table.q, step, strict=True)])
         scale = max(float(abs(q)) for q in table.q)
