@@ -171,6 +171,7 @@ class _Run:
             return False
         try:
             change = changed(self.described, self.acting, due, self.tracks)
+            self.tracks.each = change.each
             begun = self._with_changed_measures(change)
         except InvalidParameter as fault:
             if not self.motion.phases:
@@ -184,7 +185,7 @@ class _Run:
             self._stop(Problem("cannot-begin", explanation, names, decided_by=decided_by))
             return True
         self.base = self.described = change.base
-        self.acting, self.tracks.each, self.bounced = change.acting, change.each, ((), 0)
+        self.acting, self.bounced = change.acting, ((), 0)
         self.touching = begun
         self.motion.events.extend(change.events)
         sudden = [(name, work) for name, work in change.works.items() if not is_zero(work)]
@@ -195,7 +196,7 @@ class _Run:
         """Take up the measures of connections that begin or end; return what touches then."""
         measures, touching = change.base.measures, set(self.touching)
         self.unilateral, self.states = list(self.unilateral), list(self.states)
-        q = change.each[0].q
+        q, _ = self.tracks.wide()
         for name in change.names:
             for i in measures.timed[name].unilateral:
                 one = measures.unilateral[i]

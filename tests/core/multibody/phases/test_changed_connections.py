@@ -628,3 +628,62 @@ def test_what_pulls_at_corners_is_followed_across_a_beginning() -> None:
     )
     assert found.problem is None
     assert happened(found) == [("begin", "damper")]
+
+
+def test_a_rod_that_begins_on_what_hangs_at_rest_leaves_it_there() -> None:
+    found = solved(
+        [0.5],
+        gravity=[0, 0, -10],
+        bodies={
+            "swings": {"mass": 1, "at": ["0.6", 0, "-0.8"], "velocity": [0, 1, 0]},
+            "hangs": {"mass": 2, "at": [0, 0, -1]},
+        },
+        connections=[
+            {"kind": "string", "name": "one", "through": ["swings", [0, 0, 0]]},
+            {"kind": "string", "name": "two", "through": ["hangs", [0, 0, 0]]},
+            {"kind": "damper", "name": "pull", "a": "swings", "b": "hangs", "law": "0*rate"},
+            {"kind": "rod", "name": "rod", "a": "hangs", "b": [-1, -1, 2], "from": 0.159},
+        ],
+    )
+    assert happened(found) == [("begin", "rod")]
+    np.testing.assert_allclose(column(found, "hangs.velocity"), 0, atol=1e-30)
+
+
+def test_a_contact_begins_where_a_body_lies_that_moves_beside_others() -> None:
+    # Two corners hold the bar level beside a damper that a swinging stone pulls on, so that places are rounded.
+    bar = {"mass": 2, "inertia": 1, "at": [5, 0], "places": {"l": [-1, 0], "m": [0, 0], "r": [1, 0]}}
+    floors = [{"kind": "contact", "name": f"on-{spot}", "place": f"bar.{spot}", "on": {"at": [5, 0]}} for spot in "lmr"]
+    floors[2]["from"] = 0.25
+    found = solved(
+        [0.5],
+        gravity=[0, -10],
+        bodies={"stone": {"mass": 0.5, "at": [0.3, -0.4]}, "bar": bar},
+        connections=[
+            {"kind": "rod", "name": "rod", "a": "stone", "b": [0, 0]},
+            {"kind": "damper", "name": "damper", "a": "stone", "b": "bar", "coefficient": 0.5},
+            *floors,
+        ],
+    )
+    assert happened(found) == [("begin", "on-r")]
+    assert found.phases is not None
+    assert found.phases[1].states["on-r"] == "closed"
+
+
+def test_bodies_that_have_docked_go_on_when_something_else_begins() -> None:
+    # Rows of a weld in space depend on one another on its places alone; the centre of both falls freely.
+    found = solved(
+        [0.5],
+        ("trajectory",),
+        gravity=[0, 0, -10],
+        bodies={
+            "a": {"mass": 3, "moments": [1, 2, 2], "at": [0, 0, 0], "angular_velocity": [0, 0, 3]},
+            "b": {"mass": 1, "moments": [0.1, 0.2, 0.15], "at": [5, 0, -0.5]},
+        },
+        connections=[
+            {"kind": "weld", "name": "weld", "a": "a", "b": "b", "from": 0.175},
+            {"kind": "spring", "name": "spring", "a": "a", "b": "b", "stiffness": 5, "from": 0.25},
+        ],
+    )
+    assert happened(found) == [("begin", "weld"), ("begin", "spring")]
+    middle = (3 * column(found, "a.position") + column(found, "b.position")) / 4
+    np.testing.assert_allclose(middle[0], [1.25, 0, -0.125 - 1.25], rtol=1e-14, atol=1e-14)
