@@ -73,6 +73,7 @@ judge: environment
 	$(BIN)/python -m tests.core.multibody.audit.judge 20000
 	$(BIN)/python -m tests.core.multibody.relations.judge 20000
 	$(BIN)/python -m tests.oracles.plain_engine.comparison.run 5000 0
+	$(BIN)/python -m tests.oracles.plain_engine.comparison.run changes 1000 0 plain_engine_changes.json
 	$(BIN)/python -m tests.oracles.plain_engine.comparison.run catalogue
 
 plans: environment
