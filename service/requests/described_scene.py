@@ -12,17 +12,18 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import reduce
 from operator import or_
-from types import NoneType
-from typing import Annotated, Any, Literal, Self, get_args, get_origin, get_type_hints
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin, get_type_hints
 
 from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
 from core.multibody.language.body import SceneBody as DescribedBody
-from core.multibody.language.connection import Connection
+from core.multibody.language.connection import Connection, Occasion
 from core.multibody.language.contacts import ImpactLaw, Simultaneous
 from core.multibody.language.kinds import KINDS
+from core.multibody.language.occasions import MOST_COUNTED
 from core.multibody.language.reading import scene_from, unknown_field
 from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
 from core.multibody.language.units import LONGEST_UNIT
@@ -61,8 +62,41 @@ class PolarVector(Request):
     )
 
 
+class WhenQuestion(Request):
+    """A quantity, and the value that it is to take."""
+
+    quantity: str = Field(
+        description="A column, such as rod.angle or s.tension; of a vector a component, such as ball.position.x, or "
+        "its length, such as ball.velocity.length.",
+        max_length=100,
+    )
+    equals: Annotated[float | str | NumberInUnit, SkipValidation()] = Field(
+        description="In the unit of the quantity; a number as those of the description, which may use names of let."
+    )
+    nth: int | None = Field(
+        default=None, ge=1, le=MOST_FOUND, description="Which time after the start; every one if left out."
+    )
+
+
+class EventQuestion(Request):
+    """An event of the motion."""
+
+    name: str = Field(max_length=200, description="Of the connection, as events give it.")
+    kind: str | None = Field(default=None, max_length=100, description="Of the event; any if left out.")
+    nth: int | None = Field(default=None, ge=1, le=MOST_COUNTED, description="Which of them; the first if left out.")
+
+
+class OccasionInstead(Request):
+    """An occasion of the motion in place of a time: one of its fields is given."""
+
+    event: EventQuestion | None = Field(default=None, description="When it happens.")
+    when: WhenQuestion | None = Field(default=None, description="When a quantity takes a value.")
+
+
 def _form(hint: Any) -> Any:
     """Return a type of the language as the form of a question shows it: without the numbers that only Python has."""
+    if hint is Occasion:
+        return OccasionInstead
     origin, parts = get_origin(hint), get_args(hint)
     if origin is Sequence:
         return list.__class_getitem__(_form(parts[0]))
@@ -73,10 +107,6 @@ def _form(hint: Any) -> Any:
     shown = [part for part in parts if part not in (NoneType, Decimal, Fraction, int, Mapping[str, Any])]
     if not shown:
         return dict[str, Any]
-    # Two kinds of connection may share a field, each with words of its own.
-    words = dict.fromkeys(word for part in shown if get_origin(part) is Literal for word in get_args(part))
-    if words:
-        shown = [*(part for part in shown if get_origin(part) is not Literal), Literal.__getitem__(tuple(words))]
     if Mapping[str, Any] in parts:
         # What may be a number or a vector is turned about an axis: polar vectors are places, and what may be a list of
         # names an object of its own.
@@ -85,9 +115,18 @@ def _form(hint: Any) -> Any:
     return reduce(or_, map(_form, shown))
 
 
-def _by_core(hint: Any) -> Any:
-    """Return the type of a value that core checks; the document shows it."""
-    return ANNOTATED[_form(hint), SkipValidation()]  # type: ignore[type-arg]
+def _alternatives(form: Any) -> tuple[Any, ...]:
+    return get_args(form) if get_origin(form) in (Union, UnionType) else (form,)
+
+
+def _by_core(*hints: Any) -> Any:
+    """Return the type of a value that core checks, and that may be of each of some types; the document shows it."""
+    shown = [part for form in map(_form, hints) for part in _alternatives(form)]
+    # Two kinds of connection may share a field, each with words of its own.
+    words = dict.fromkeys(word for part in shown if get_origin(part) is Literal for word in get_args(part))
+    if words:
+        shown = [*(part for part in shown if get_origin(part) is not Literal), Literal.__getitem__(tuple(words))]
+    return ANNOTATED[reduce(or_, shown), SkipValidation()]  # type: ignore[type-arg]
 
 
 def _body_form() -> type[Request]:
@@ -103,18 +142,16 @@ def _body_form() -> type[Request]:
 
 def _connection_form() -> type[Request]:
     """Return the form with the fields of all kinds; core checks those of each."""
-    kinds: dict[str, list[str]] = {}
-    hints: dict[str, Any] = {}
+    kinds: dict[str, dict[str, Any]] = {}
     for kind, cls in KINDS.items():
         written = get_type_hints(cls)
         for entry in fields(cls):
             # A word of Python's has a sign behind it as the name of a field.
             name, hint = entry.name.rstrip("_"), written[entry.name]
-            kinds.setdefault(name, []).append(kind)
-            hints[name] = hints[name] | hint if name in hints else hint
+            kinds.setdefault(name, {})[kind] = hint
     own: dict[str, Any] = {
-        name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
-        for name, hint in hints.items()
+        name: (_by_core(*hints.values()), Field(default=None, description=f"For {', '.join(hints)}."))
+        for name, hints in kinds.items()
     }
     meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in KINDS.items())
     own["kind"] = (Literal.__getitem__(tuple(KINDS)), Field(description=meaning))
@@ -131,22 +168,6 @@ NamedNumbers: Any = _by_core(get_type_hints(Scene)["let"])
 ConnectionReadByCore: Any = _by_core(SceneConnection)
 Assemble: Any = _by_core(get_type_hints(Scene)["assemble"])
 SCENE_FIELDS = tuple(entry.name for entry in fields(Scene))
-
-
-class WhenQuestion(Request):
-    """A quantity, and the value that it is to take."""
-
-    quantity: str = Field(
-        description="A column, such as rod.angle or s.tension; of a vector a component, such as ball.position.x, or "
-        "its length, such as ball.velocity.length.",
-        max_length=100,
-    )
-    equals: WrittenNumber = Field(
-        description="In the unit of the quantity; a number as those of the description, which may use names of let."
-    )
-    nth: int | None = Field(
-        default=None, ge=1, le=MOST_FOUND, description="Which time after the start; every one if left out."
-    )
 
 
 class ThresholdsQuestion(Request):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import Field, dataclass
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, NewType
 
 from core.multibody.algebra.polynomials import is_zero
 from core.multibody.language.body import SceneBody
@@ -15,8 +15,11 @@ from core.multibody.language.written import Number, Place
 Aspect = Literal["turn", "direction", "orientation"]
 """What a connection needs of a body beside its places: its angle, its axes in the plane, its axes in space."""
 
-Moment = Annotated[Number | Mapping[str, Any], Measured("s")]
-"""A time (s), ``{"event": {"kind", "name", "nth"}}`` or ``{"when": {"quantity", "equals", "nth"}}``."""
+Occasion = NewType("Occasion", Mapping[str, Any])
+"""``{"event": {"kind", "name", "nth"}}`` or ``{"when": {"quantity", "equals", "nth"}}``."""
+
+Moment = Annotated[Number | Occasion, Measured("s")]
+"""A time (s) or an occasion."""
 
 ATTITUDE: tuple[Aspect, ...] = ("direction", "orientation")
 """The axes of a body, in the plane or in space."""

@@ -48,7 +48,7 @@ class _Comparison:
     def __init__(self, old: Document, new: Document) -> None:
         self.old, self.new = old, new
         self.made: list[Document] = []
-        self.seen: set[tuple[int, int, bool]] = set()
+        self.found: dict[tuple[int, int, bool], list[str]] = {}
 
     def operations(self) -> Iterator[str]:
         for path, methods in self.old["paths"].items():
@@ -94,11 +94,14 @@ class _Comparison:
         old, new = self.resolved(self.old, old), self.resolved(self.new, new)
         # Schemas of scenes refer to one another in circles. Identities last as long as the documents.
         pair = id(old), id(new), sent
-        if pair in self.seen:
-            return
-        self.seen.add(pair)
+        if pair not in self.found:
+            self.found[pair] = []
+            self.found[pair] = list(self.compared(place, old, new, sent=sent))
+        yield from self.found[pair]
+
+    def compared(self, place: str, old: Document, new: Document, *, sent: bool) -> Iterator[str]:
         before, after = self.variants(self.old, old), self.variants(self.new, new)
-        if len(before) > 1 or len(after) > 1:
+        if any(sum(map(len, alternatives.values())) > 1 for alternatives in (before, after)):
             yield from self.unions(place, before, after, sent=sent)
             return
         fields, others = old.get("properties", {}), new.get("properties", {})
@@ -118,29 +121,36 @@ class _Comparison:
             if isinstance(old.get(inner), dict) and isinstance(new.get(inner), dict):
                 yield from self.schemas(f"{place}/*", old[inner], new[inner], sent=sent)
 
-    def unions(self, place: str, before: Document, after: Document, *, sent: bool) -> Iterator[str]:
+    def unions(
+        self, place: str, before: dict[str, list[Document]], after: dict[str, list[Document]], *, sent: bool
+    ) -> Iterator[str]:
         for name in before.keys() - after.keys() if sent else after.keys() - before.keys():
             # A response may have a new alternative of objects, as it may have a new value of an enumeration.
             if sent or not name.startswith("object"):
                 yield f"{place}: {'no longer' if sent else 'also'} {name}"
         for name in before.keys() & after.keys():
-            yield from self.schemas(place, before[name], after[name], sent=sent)
+            # What may be sent still fits an alternative; what is answered fits one that it fitted.
+            for one in before[name] if sent else after[name]:
+                others = after[name] if sent else before[name]
+                pairs = [(one, other) if sent else (other, one) for other in others]
+                yield from min((list(self.schemas(place, *pair, sent=sent)) for pair in pairs), key=len)
 
-    def variants(self, document: Document, schema: Document) -> Document:
-        """Return the alternatives of a schema by what tells them apart: type, and the tag or the name of an object."""
+    def variants(self, document: Document, schema: Document) -> dict[str, list[Document]]:
+        """Return the alternatives of a schema by what tells them apart: type, and the tag of an object."""
         listed = schema.get("anyOf") or schema.get("oneOf")
         if not listed:
             types = schema.get("type")
             listed = [self.kept(schema | {"type": one}) for one in types] if isinstance(types, list) else [schema]
-        found: Document = {}
+        found: dict[str, list[Document]] = {}
         for one in listed:
             own = self.resolved(document, one)
             tag = own.get("properties", {}).get("kind", {}).get("const", "")
             name = f"{own.get('type', 'anything')} {tag}".strip()
             if own.get("anyOf") or own.get("oneOf"):
-                found |= self.variants(document, own)
+                for inner, alternatives in self.variants(document, own).items():
+                    found.setdefault(inner, []).extend(alternatives)
             else:
-                found[name] = own
+                found.setdefault(name, []).append(own)
         return found
 
     def kept(self, schema: Document) -> Document:

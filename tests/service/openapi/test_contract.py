@@ -30,6 +30,11 @@ def test_the_promises_of_a_document_are_those_of_its_promises() -> None:
     assert breaks(promises(CURRENT), CURRENT) == []
 
 
+POLAR, IN_UNIT, EVENT = (
+    {"type": "object", "properties": {name: {"type": "string"}}} for name in ("polar", "unit", "event")
+)
+
+
 def document() -> Any:
     return {
         "paths": {
@@ -49,6 +54,7 @@ def document() -> Any:
                     "properties": {
                         "kind": {"enum": ["one", "two"]},
                         "mass": {"anyOf": [{"type": "number"}, {"type": "string"}]},
+                        "at": {"anyOf": [POLAR, IN_UNIT]},
                     },
                     "required": ["mass"],
                 },
@@ -86,6 +92,7 @@ Q, A = ("components", "schemas", "Q"), ("components", "schemas", "A")
         (changed(*Q, "required", to=["mass", "kind"]), "kind is required"),
         (changed(*Q, "properties", "kind", "enum", to=["one"]), "'two' is gone"),
         (changed(*Q, "properties", "mass", to={"type": "number"}), "no longer string"),
+        (changed(*Q, "properties", "at", "anyOf", to=[EVENT, IN_UNIT]), "polar is gone"),
         (changed(*A, "properties", "period", to=None), "period is gone"),
         (changed(*A, "required", to=[]), "period may be left out"),
         (changed(*A, "properties", "period", to={"type": ["number", "null"]}), "also null"),
@@ -102,6 +109,7 @@ def test_breaks_are_found(new: Any, said: str) -> None:
         changed(*Q, "properties", "colour", to={"type": "string"}),
         changed(*Q, "properties", "kind", "enum", to=["one", "two", "three"]),
         changed(*Q, "required", to=[]),
+        changed(*Q, "properties", "at", "anyOf", to=[POLAR, EVENT, IN_UNIT]),
         changed(*A, "properties", "rate", to={"type": "number"}),
         changed(*A, "required", to=["period", "next"]),
     ],
