@@ -29,7 +29,6 @@ from core.assessment.judged_claims import (
     wanted_form,
 )
 from core.assessment.judged_formulas import (
-    AT_ONE_PLACE,
     FORMULA,
     NOT_JUDGED,
     UNDEFINED,
@@ -226,7 +225,7 @@ class Grader:
             masses = {name: one for name, one in self._parameters.items() if one[0][-1] == "mass"}
             own = {name: self._parameters[name] for name in sorted(formula.names)}
             found = self._judged(formula, path, reference, times, masses | own)
-            alone = found.why == AT_ONE_PLACE and self._judged(formula, path, reference, times, masses)
+            alone = found.at_one_place and self._judged(formula, path, reference, times, masses)
             if alone and alone.judgement.correct:
                 # Either the lengths in it are wrong, or the scene with others is another one.
                 found = JudgedFormula(Judgement("not-gradable"), NOT_JUDGED)

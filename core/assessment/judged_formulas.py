@@ -44,11 +44,14 @@ class JudgedFormula:
         Key of the feedback on what is wrong; empty if nothing is known of it.
     value : float or None
         At the question's own parameters; None where the formula has none.
+    at_one_place : bool
+        Whether it agrees there and at no more than some variations, whatever else is known of it.
     """
 
     judgement: Judgement
     why: str = ""
     value: float | None = None
+    at_one_place: bool = False
 
 
 def judge_formula(
@@ -82,13 +85,14 @@ def judge_formula(
     own = compare(replace(reference, inherited=0.0), values[0], FORMULA)
     if own.verdict == "not-gradable":
         return JudgedFormula(own)
-    why = ""
-    if own.verdict == "correct":
+    at_one_place = own.verdict == "correct"
+    if at_one_place:
         if all(_agrees(value, one, reference) for value, one in zip(values, variations, strict=True)):
             return JudgedFormula(own, value=values[0])
-        own, why = replace(own, verdict="incorrect"), AT_ONE_PLACE
+        own = replace(own, verdict="incorrect")
     # Dimensions explain what is wrong; a constant with a hidden unit may be right.
-    return JudgedFormula(own, _dimensional_fault(formula, units, reference.unit) or why, None if why else values[0])
+    why = _dimensional_fault(formula, units, reference.unit) or (AT_ONE_PLACE if at_one_place else "")
+    return JudgedFormula(own, why, None if at_one_place else values[0], at_one_place)
 
 
 UNDEFINED = "formula-undefined"

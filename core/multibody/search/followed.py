@@ -239,7 +239,11 @@ class Followed:
         if not np.all(until > 0.0):
             what = "what is watched has no value where its search leads, however short its pieces are"
             raise AccuracyUnreachable(None, math.inf, what, path=("times",))
-        pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
+        # What leaves the range of doubles is refused below.
+        with np.errstate(over="ignore", invalid="ignore"):
+            pieces = [
+                motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)
+            ]
         cut = [np.where(each.cut, each.natural, np.inf) for each in pieces]
         shortest = np.minimum.reduce([np.abs(each.lengths) for each in pieces])
         # Computations that are a little apart may have corners at different times, or models of which one holds for
