@@ -80,7 +80,8 @@ def compile_kernels(name: str) -> None:
     from service.execution.worker import terms_of, warm_handler
     from service.routing import TABLE
 
-    warm_handler(terms_of(Settings(), TABLE), scenes_first=name == "scenes")
+    handler = warm_handler(terms_of(Settings(), TABLE), scenes_first=name == "scenes")
+    handler.compile_members()
 
 
 if __name__ == "__main__":

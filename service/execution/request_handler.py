@@ -65,6 +65,16 @@ class RequestHandler:
             # The first question that names one of its methods would otherwise wait for it.
             scipy_integrate()
 
+    def compile_members(self) -> None:
+        """Have every kernel compiled by which members of studies are answered together.
+
+        Few processes need them, which load them with the first study.
+        """
+        for route in self._routes:
+            if route.many is not None:
+                for arguments in route.members:
+                    route.many(*arguments)
+
 
 def signed(fields: Answer) -> Answer:
     """Return the whole answer that has such fields."""

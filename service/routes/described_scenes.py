@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
+import numpy as np
+
 from core.multibody.answer import RestRange
 from core.multibody.model_answer import Assembly, SceneModel, SmallMotion
 from core.multibody.solve import OUTPUTS, solve_scene
@@ -138,6 +140,8 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
     return value
 
 
+# Questions that have kernels of their own: a heavy body about a point, one of them for its start alone, a loop of bars,
+# a named method, a search, a slip that turns, also from rest, a formula of pieces, a stiff motion, soft places of rest.
 HEAVY_BODY = scene_catalogue()["kovalevskaya-top"].question
 TURNING_SLIP = {**scene_catalogue()["stone-across-slope"].question, "times": [0.01]}
 LOOP = {**scene_catalogue()["four-bar-linkage"].question, "times": [0.05]}
@@ -156,6 +160,31 @@ PIECES = {
     "connections": [{"kind": "force", "place": "one", "force": ["sign(sin(x) - 1/2)", 0.0]}],
     "times": [0.01],
 }
+STIFF = {
+    "bodies": {"bob": {"mass": 1.0, "at": [1.0, 0.0]}},
+    "connections": [
+        {"kind": "rod", "name": "rod", "a": "bob", "b": [0.0, 0.0]},
+        {"kind": "damper", "a": "bob", "b": [0.0, 3.0], "coefficient": 1e7},
+        {"kind": "spring", "a": "bob", "b": [0.0, 3.0], "stiffness": 1e7, "rest_length": 2.5},
+    ],
+    "times": [1e-3],
+    "outputs": [{"extremes": "rod.force"}],
+}
+SLIP_FROM_REST = {
+    "gravity": [0.0, 0.0, -9.81],
+    "bodies": {"block": {"mass": 1.0, "at": [0.0, 0.0, 0.0]}},
+    "connections": [
+        {"kind": "contact", "place": "block", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}, "friction": 0.2},
+        {"kind": "force", "place": "block", "force": [3.0, "t", 0.0]},
+    ],
+    "times": [0.01],
+}
+SOFT_REST = scene_catalogue()["lagrange-points"].question
+MEMBERS = (
+    {**scene_catalogue()["double-pendulum"].question, "times": [0.0, 0.1]},
+    {("bodies", "one", "mass"): np.array([1.0, 2.0])},
+    [("accuracy", "error")],
+)
 
 DESCRIBED_SCENES = (
     PostRoute(
@@ -166,12 +195,22 @@ DESCRIBED_SCENES = (
         DescribedSceneRequest,
         DescribedSceneAnswer,
         solved,
-        # A heavy body about a point has kernels of its own, one of them for its start alone; so have a named method, a
-        # loop of bars, a slip that turns and a formula of pieces.
-        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, LOOP, BY_METHOD, SEARCHED, TURNING_SLIP, PIECES),
+        warming=(
+            HEAVY_BODY,
+            {**HEAVY_BODY, "times": [0.0]},
+            LOOP,
+            BY_METHOD,
+            SEARCHED,
+            TURNING_SLIP,
+            SLIP_FROM_REST,
+            PIECES,
+            STIFF,
+            SOFT_REST,
+        ),
         description=DESCRIPTION,
         representations={SVG: draw_described},
         many=many_scenes,
+        members=(MEMBERS,),
     ),
 )
 
