@@ -135,7 +135,7 @@ class PostRoute(Documented):
     many : callable or None
         From a request that can be read, columns of numbers that take the place of some of its own, and the paths of
         figures to the figures of all these questions, to the bit those of `handle`; None for what it cannot do.
-    members : sequence of arguments of `many`
+    warming_many : sequence of arguments of `many`
         By which every kernel that it can reach is compiled.
     """
 
@@ -155,7 +155,7 @@ class PostRoute(Documented):
     errors: Callable[[Any, Budget], tuple[Answer, str]] | None = None
     in_short: Sequence[Callable[[Any, Budget], Answer]] = ()
     many: Callable[[Any, Columns, Sequence[Path]], ManyFigures | None] | None = None
-    members: Sequence[tuple[Any, Columns, Sequence[Path]]] = ()
+    warming_many: Sequence[tuple[Any, Columns, Sequence[Path]]] = ()
     method: str = "POST"
 
     @property

@@ -81,7 +81,7 @@ def compile_kernels(name: str) -> None:
     from service.routing import TABLE
 
     handler = warm_handler(terms_of(Settings(), TABLE), scenes_first=name == "scenes")
-    handler.compile_members()
+    handler.warm_many()
 
 
 if __name__ == "__main__":

@@ -65,14 +65,14 @@ class RequestHandler:
             # The first question that names one of its methods would otherwise wait for it.
             scipy_integrate()
 
-    def compile_members(self) -> None:
+    def warm_many(self) -> None:
         """Have every kernel compiled by which members of studies are answered together.
 
         Few processes need them, which load them with the first study.
         """
         for route in self._routes:
             if route.many is not None:
-                for arguments in route.members:
+                for arguments in route.warming_many:
                     route.many(*arguments)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from core.errors import Path
 from core.multibody.answer import RestRange
 from core.multibody.model_answer import Assembly, SceneModel, SmallMotion
 from core.multibody.solve import OUTPUTS, solve_scene
@@ -20,7 +21,7 @@ from service.routes.equations_answer import equations_fields
 from service.routes.many_scenes import many_scenes
 from service.routes.motion_figures import draw_described
 from service.routes.scene_catalogue import scene_catalogue
-from service.routing import Answer, PostRoute
+from service.routing import Answer, Columns, PostRoute
 from service.schemas import View, fields_of, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
@@ -180,7 +181,7 @@ SLIP_FROM_REST = {
     "times": [0.01],
 }
 SOFT_REST = scene_catalogue()["lagrange-points"].question
-MEMBERS = (
+MEMBERS: tuple[Any, Columns, Sequence[Path]] = (
     {**scene_catalogue()["double-pendulum"].question, "times": [0.0, 0.1]},
     {("bodies", "one", "mass"): np.array([1.0, 2.0])},
     [("accuracy", "error")],
@@ -210,7 +211,7 @@ DESCRIBED_SCENES = (
         description=DESCRIPTION,
         representations={SVG: draw_described},
         many=many_scenes,
-        members=(MEMBERS,),
+        warming_many=(MEMBERS,),
     ),
 )
 

@@ -78,7 +78,7 @@ def show(when):
 routes = {route.path: route for route in resolve_name(TABLE)()}
 handler = RequestHandler(routes.values(), Budget(), Limits())
 handler.warm()
-handler.compile_members()
+handler.warm_many()
 show("warm")
 for name in names():
     # A study is answered by the processes of an engine.
