@@ -25,7 +25,7 @@ from core.arrays import Floats
 from core.multibody.language.reading import scene_from
 from core.multibody.language.scene import Scene
 from core.multibody.members.many import ManyScenes
-from core.multibody.members.plan import Varied
+from core.multibody.members.recorded_balls import Varied
 from core.multibody.solve import solve_scene
 
 MEMBERS, JUDGED, ALONE = 1024, 64, 16

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from pydantic import ValidationError
 
 from core.arrays import Floats
 from core.assessment.propagation import at
@@ -15,7 +16,7 @@ from core.errors import MechanicsError, Path
 from core.multibody.language.reading import scene_from
 from core.multibody.language.scene import Scene
 from core.multibody.members.many import AnsweredTogether, ManyScenes
-from core.multibody.members.plan import Varied
+from core.multibody.members.recorded_balls import NotRecorded, Varied, recording
 from core.multibody.solve import DEFAULT_OUTPUTS
 from core.systems.budget import Budget
 from service.requests.described_scene import DescribedSceneRequest
@@ -79,9 +80,10 @@ def _question(request: str, places: tuple[Path, ...]) -> _Question | None:
         def scene_of(numbers: Sequence[Any]) -> Scene:
             return scene_from(_with(json.loads(description), places, numbers))
 
-        many = ManyScenes(scene_of([Varied() for _ in places]), places, scene_of)
-        return _Question(many, times, form.accuracy) if many.can_follow(times) else None
-    except (MechanicsError, ValueError, TypeError):
+        with recording():
+            many = ManyScenes(scene_of([Varied() for _ in places]), places, scene_of)
+            return _Question(many, times, form.accuracy) if many.can_follow(times) else None
+    except (MechanicsError, ValidationError, NotRecorded):
         # What cannot be read so is refused, or answered, by itself.
         return None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -16,6 +16,7 @@ from service.requests.request_reader import Limits, Reader
 from service.routes import questions
 from service.routes.studies import studying
 from service.routing import Columns, ManyFigures, PostRoute
+from tests.drawn import sampled
 
 ROUTES = {route.path: route for route in questions() if route.many is not None}
 
@@ -150,3 +151,27 @@ def test_what_is_not_answered_at_once_is_answered_one_by_one() -> None:
     assert route.many(moments | {"measure": {"duration": 1.0}}, columns, [("flip_interval",)]) is None
     assert route.many(moments, columns, [("measured", "period")]) is None
     assert route.many(moments, {("body", "moments"): np.array([1.0])}, [("flip_interval",)]) is None
+
+
+def numbers_in(document: Any, path: Path = ()) -> Iterator[tuple[Path, float]]:
+    """Yield the numbers of a request with their places."""
+    inner = (
+        document.items() if isinstance(document, dict) else enumerate(document) if isinstance(document, list) else ()
+    )
+    for step, value in inner:
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            yield (*path, step), float(value)
+        yield from numbers_in(value, (*path, step))
+
+
+EXAMPLES = [json.loads(json.dumps(example.question)) for example in ROUTES["/v1/scenes"].examples.values()]
+VARIED = [(k, place, number) for k, request in enumerate(EXAMPLES) for place, number in numbers_in(request)]
+
+
+@pytest.mark.parametrize(("k", "place", "number"), sampled(VARIED, "varied numbers of examples"))
+def test_any_number_of_a_scene_may_vary(k: int, place: Path, number: float) -> None:
+    """Whatever its set-up does with it is recorded, or is known not to be."""
+    many = ROUTES["/v1/scenes"].many
+    assert many is not None
+    found = many(EXAMPLES[k], {place: np.array([number])}, [("accuracy", "error")])
+    assert found is None or found.figures.shape == (1, 1)

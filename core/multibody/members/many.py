@@ -47,7 +47,7 @@ class ManyScenes:
     Parameters
     ----------
     scene : Scene
-        With `plan.Varied` in place of the numbers that vary.
+        With `recorded_balls.Varied` in place of the numbers that vary.
     places : sequence of paths
         Where these stand.
     scene_of : callable

@@ -16,7 +16,7 @@ from core.multibody.equations.packed import Units, pair, state
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.members.lane_table import LaneForm, form_of, numbers_of
-from core.multibody.members.recorded_balls import CODE, NotRecorded, Record
+from core.multibody.members.recorded_balls import CODE, NotRecorded, Record, recording
 from core.multibody.motion.modelling import Modelled, modelled
 from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.smooth_motion import smooth_motion
@@ -31,10 +31,6 @@ MOST_RECORDS = 64
 
 MOST_IN_VAIN = 4
 """The same where none has led to a plan: the scene then is no motion in lanes."""
-
-
-class Varied:
-    """Stands in a description for a number that members have each of their own; only numerals read it."""
 
 
 class _AsWritten(Numerals):
@@ -133,7 +129,7 @@ class Plans:
     Parameters
     ----------
     scene : Scene
-        With `Varied` at the places of these numbers.
+        With `recorded_balls.Varied` at the places of these numbers.
     places : sequence of paths
     """
 
@@ -153,8 +149,9 @@ class Plans:
         if found is None and self.records < (MOST_RECORDS if self.known else MOST_IN_VAIN):
             self.records += 1
             try:
-                self._record(balls)
-            except (NotRecorded, MechanicsError, TypeError, AttributeError, ArithmeticError):
+                with recording():
+                    self._record(balls)
+            except (NotRecorded, MechanicsError, ArithmeticError):
                 # What is refused by itself is refused so, and what a record does not hold is answered so.
                 return None
             found = self._known(balls)

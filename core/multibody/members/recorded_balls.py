@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,6 +22,24 @@ from core.multibody.equations.packed import pair
 
 class NotRecorded(Exception):
     """Something was done that a record does not hold, so that members are answered one by one."""
+
+
+class Varied:
+    """Stands in a description for a number that members have each of their own; only numerals read it."""
+
+
+@contextmanager
+def recording() -> Iterator[None]:
+    """Have what a stand-in for numbers of members cannot do raise `NotRecorded`; any other fault stays what it is.
+
+    Python and flint, where they meet one, raise a TypeError that names its class.
+    """
+    try:
+        yield
+    except TypeError as fault:
+        if not any(one.__name__ in str(fault) for one in (Varied, RecordedBall, Placeholder)):
+            raise
+        raise NotRecorded(str(fault)) from fault
 
 
 @dataclass

@@ -9,7 +9,7 @@ from typing import Any
 from core.multibody.language.reading import scene_from
 from core.multibody.language.scene import Scene
 from core.multibody.members.many import ManyScenes
-from core.multibody.members.plan import Varied
+from core.multibody.members.recorded_balls import Varied
 
 Places = Sequence[tuple[Any, ...]]
 

@@ -13,7 +13,8 @@ from core.multibody.members.lane_doubles import follow_in_doubles
 from core.multibody.members.lane_motion import Follow
 from core.multibody.members.lane_pairs import follow_in_pairs
 from core.multibody.members.lane_table import LaneForm
-from core.multibody.members.plan import Plans, Varied
+from core.multibody.members.plan import Plans
+from core.multibody.members.recorded_balls import Varied
 from tests.core.multibody.members.scenes import double_pendulum, with_numbers
 
 PLACES = (("let", "a"), ("let", "b"))

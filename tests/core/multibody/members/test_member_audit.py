@@ -15,7 +15,8 @@ from core.multibody.audit.definitions import Description, description_of
 from core.multibody.language.reading import scene_from
 from core.multibody.members.follow import Followed, followed
 from core.multibody.members.member_audit import keep_the_laws, sets_of, windows_of
-from core.multibody.members.plan import Plans, Varied
+from core.multibody.members.plan import Plans
+from core.multibody.members.recorded_balls import Varied
 from tests.core.multibody.members.scenes import Places, double_pendulum, with_numbers
 
 PLACES = (("let", "a"), ("let", "b"))

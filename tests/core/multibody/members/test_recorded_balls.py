@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from flint import arb
+from flint import arb, arb_mat
 
 from core.balls import precision
 from core.multibody.algebra.rank import Elimination
 from core.multibody.algebra.square_systems import inverse, solved, times_inverse
 from core.multibody.equations.packed import exponent, largest_exponent, pair
 from core.multibody.members.plan import Template
-from core.multibody.members.recorded_balls import NotRecorded, Record
+from core.multibody.members.recorded_balls import NotRecorded, Record, Varied, recording
 
 BITS = 320
 
@@ -88,3 +88,23 @@ def test_a_number_of_a_member_decides_nothing_as_a_double() -> None:
         # A double that is decided by is that of one member alone.
         assert float(x) == 3.0
         assert record.repeated()(arb(4)) is None
+
+
+def test_what_a_stand_in_cannot_do_is_not_recorded_and_other_faults_are_not_hidden() -> None:
+    with precision(BITS):
+        record = Record(1)
+        (x,) = record.begun([arb(3)])
+        high, _ = pair(x, 0)
+        for doing in (
+            lambda: arb_mat([[x]]),
+            lambda: x.str(radius=False),
+            lambda: high + 1.0,
+            lambda: float(Varied()),
+            lambda: Varied() < 1.0,
+            lambda: np.array([x, 1.0], dtype=float) + high,
+        ):
+            with pytest.raises(NotRecorded), recording():
+                doing()
+    for fault in (lambda: len(1.0), lambda: x.no_function_of_balls, lambda: float("three")):
+        with pytest.raises((TypeError, AttributeError, ValueError)), recording():
+            fault()
