@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import socket
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
-from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any
 
-import dask
 import numpy as np
 import pytest
 
@@ -45,6 +45,10 @@ UNIFORM: dict[str, Any] = {
 """A study whose members are quickly answered."""
 
 
+FOREVER = 10 * PATIENCE
+"""Seconds that no test waits for."""
+
+
 def sleeping(seconds: float, count: int) -> dict[str, Any]:
     """Return a study of whose members each takes so long."""
     request = GOOD | {"behaviour": "sleep", "angular_velocity": [seconds, 1.0, 0.1]}
@@ -67,19 +71,12 @@ def in_process() -> Iterator[str]:
 @pytest.fixture(scope="session")
 def processes() -> Iterator[str]:
     """Yield the address of a cluster of two processes, to which studies connect as to any existing one."""
-    from distributed import LocalCluster
-
-    settings = {
-        "distributed.worker.multiprocessing-method": "forkserver",
-        "distributed.scheduler.allowed-failures": 0,
-        "logging.distributed": "critical",
-    }
-    with dask.config.set(settings):
-        # Imports are made once for both.
-        forkserver.set_forkserver_preload(["tests.service.studies.toy_table", "distributed"])
-        forkserver.ensure_running()
-        with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
-            yield cluster.scheduler_address
+    command = [sys.executable, "-m", "tests.service.studies.toy_cluster"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as cluster:
+        assert cluster.stdout is not None
+        address = cluster.stdout.readline().strip()
+        assert address, "the cluster has not started"
+        yield address
 
 
 @pytest.fixture
@@ -113,9 +110,9 @@ class Desk:
         rest = {"together": False, "seconds": 1e-3, "bytes": 0}
         return self.store.create(Owner(""), body, plan | rest, Quotas(100, 100, 10**9))
 
-    def work(self, until: Callable[[], Any] = lambda: False, most: float = PATIENCE) -> None:
+    def work(self, until: Callable[[], Any] = lambda: False) -> None:
         """Work until there is nothing to do, or something has come about."""
-        end = time.monotonic() + most
+        end = time.monotonic() + PATIENCE
         while not until() and self.engine.turn():
             assert time.monotonic() < end
 
