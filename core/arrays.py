@@ -1,4 +1,4 @@
-"""Arrays of doubles and of integers, as annotations, and how large they are; shapes are in the docstrings."""
+"""Arrays of doubles, complex numbers and integers, as annotations, and how large they are; docstrings give shapes."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 

@@ -406,7 +406,10 @@ TESTED_IN |= {
             "equations/packed motion/products motion/returns motion/run motion/series motion/series_pairs"
             " motion/vertical_symmetry"
         ),
-        "motion/test_stiff": "motion/collocation motion/linearised motion/radau",
+        "motion/test_stiff": (
+            "algebra/complex_systems motion/collocated motion/collocation motion/dissipative motion/linearised"
+            " motion/radau motion/stages"
+        ),
         "equations/test_saddle": "algebra/square_inverse equations/schur_complement",
         "phases/test_phase_answer": "phases/phase_states phases/phase_columns",
         "phases/test_described_system": "phases/method_samples phases/smooth_motion trajectory/scene_request",

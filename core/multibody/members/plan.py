@@ -196,14 +196,12 @@ def _setup_of(model: Modelled, record: Record) -> Setup:
     if len(whole.parts) != 1 or whole.dropped or measures.limits:
         raise NotRecorded("a motion of several parts, or one that is watched")
     motion, coordinates = whole.parts[0][1], measures.coordinates
+    # What decays may be stiff, of which each member decides by itself.
     if type(motion) is not Numerical or motion.lost_to_doubles or len(motion.rows):
         raise NotRecorded("a motion of another model")
     arrays, table = motion.arrays, motion.table
-    if table.acting or "s" in table.units or not arrays.binds.all() or len(arrays.slides.at):
-        raise NotRecorded("forces by formulas, or friction")
-    if len(arrays.damp):
-        # What decays may be stiff, of which each member decides by itself.
-        raise NotRecorded("a motion that may decay")
+    if "s" in table.units or len(arrays.slides.at):
+        raise NotRecorded("what depends on time, or friction that turns")
     if len(arrays.load) + len(arrays.rate) > MOST_COORDINATES:
         raise NotRecorded("a large table")
     if list(whole.parts[0][0]) != list(range(len(table.names))):

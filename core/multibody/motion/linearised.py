@@ -16,7 +16,9 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.equations.packed import Packed
+from core.multibody.equations.saddle import Saddle, inverted, saddle_space
 from core.multibody.laws.kernel import PackedLaws, values_of_laws
+from core.multibody.motion.series_pairs import entries_of_lines_pairs
 
 NUDGE = 2.0**-40
 """By how much inputs of formulas are changed for their derivatives, in the units of a table: forces are in pairs, so
@@ -176,3 +178,30 @@ def residual(
             i, o = laws.push_at[p, 0], laws.push_at[p, 1]
             ph, pl = dd_mul(laws.push[p, 0], laws.push[p, 1], values[o, 0, 0], values[o, 0, 1])
             out[i, 0], out[i, 1] = dd_add(out[i, 0], out[i, 1], -ph, -pl)
+
+
+@kernel()
+def unknowns_at(table: Packed, space: Saddle, q: Floats, v: Floats, x: Floats) -> bool:
+    """Fill in accelerations and multipliers at a state, shape (n + m, 2), in doubles; return whether they are known."""
+    size, n = len(x), len(q)
+    lines, missed = np.empty((table.lines.shape[0], 2)), np.empty((size, 2))
+    path, values = np.empty((2, 2 * n)), np.zeros((table.laws.operations.shape[0], 1, 2))
+    entries_of_lines_pairs(table, q, lines)
+    if not inverted(table, lines[:, 0].copy(), space):
+        return False
+    x[:] = 0.0
+    residual(table, q, v, x, lines, path, values, missed)
+    for i in range(size):
+        for j in range(size):
+            x[i, 0] -= space.columns[0, j, i] * missed[j, 0]
+    return True
+
+
+@kernel()
+def linearised_at(table: Packed, q: Floats, v: Floats) -> Linearised:
+    """Return the derivatives of the equation at a state; no numbers where accelerations are not determined."""
+    at, x = linearised_space(table), np.zeros((table.load.shape[0] + table.rate.shape[0], 2))
+    if not unknowns_at(table, saddle_space(table, 1), q, v, x):
+        x[:] = np.nan
+    linearise(table, q, v, x, at)
+    return at

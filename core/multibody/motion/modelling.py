@@ -18,6 +18,7 @@ from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.language.switches import switches_of
 from core.multibody.laws.series import values_at
+from core.multibody.motion.dissipative import Dissipative, dissipates
 from core.multibody.motion.driven_modes import driven_modes
 from core.multibody.motion.euler_poisson import EulerPoisson
 from core.multibody.motion.free_body import freely_turning
@@ -288,7 +289,7 @@ def _motion(piece: Piece) -> Motion:
         returning = repeating(part, gain, chosen)
         if returning is not None:
             return returning
-        return Numerical.of(part, gain, chosen, "forces are formulas of time, places or rates that are not linear")
+        return followed(part, gain, chosen, "forces are formulas of time, places or rates that are not linear")
     linear = all(row.constant for row in part.rows)
     if linear and not part.stiffness and not part.damping and not part.gyration:
         return Uniform(part, gain)
@@ -315,4 +316,10 @@ def _motion(piece: Piece) -> Motion:
         0: "the rates that are prescribed leave nothing free",
         1: "one degree of freedom that does not return soon, or is driven or damped",
     }.get(free, f"{free} degrees of freedom are coupled by quadratic terms")
-    return Numerical.of(part, gain, chosen, why)
+    return followed(part, gain, chosen, why)
+
+
+def followed(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int], why: str) -> Numerical:
+    """Return the motion of a part without a closed form, which is followed step by step."""
+    model = Dissipative if dissipates(table) else Numerical
+    return model.of(table, acceleration, chosen, why)

@@ -12,14 +12,13 @@ import numpy as np
 from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import Ball
-from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
+from core.multibody.equations.packed import Packed, Units, packed, two_to, units_of
 from core.multibody.motion.lost_rank import KEPT, first_lost, lines_that_may_depend
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.other_rows import rows_for
-from core.multibody.motion.run import GivenUp, Run, evaluate, run_by
+from core.multibody.motion.run import Run, begun, evaluate, run_by
 from core.multibody.motion.series import STUCK, advance, placed
 from core.multibody.motion.series_pairs import advance_pairs
-from core.multibody.motion.stiff import collocated, dissipates, limiting_decay, pieces_of_steps, rates_of_decay
 from core.multibody.table.table import Table
 
 _SAME_PLACE = 1e-3
@@ -38,10 +37,9 @@ power 2/3 of the time that is left, to 1e-8 where steps are the shortest, and ar
 
 DOUBLES_SHARE, FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
-_STIFF_SHARE = 1.0
-"""The same of stiff motions: steps that are short for other reasons leave both runs as wrong as one another."""
-
-OnTheWay = Callable[[Floats, Floats, float, float], None]
+ALIKE_MARGIN = 16.0
+"""Factor of the difference of two runs in pairs that are of about the same accuracy."""
+GivesUp = Callable[[Floats, Floats, float, float], bool]
 
 FINE_MARGIN, GROWTH = 4.0, 2.0**-50
 """Factor of the difference of two runs in pairs, and share of the errors of doubles, which tell how rounding grows."""
@@ -70,8 +68,6 @@ class Numerical(Motion):
         The rows of the table that are in the arrays.
     rows : ndarray of int
         Numbers, among these, of those that may come to depend on one another.
-    stiff : bool
-        Whether the time after the start is followed by collocation.
     """
 
     table: Table
@@ -83,9 +79,6 @@ class Numerical(Motion):
     period: Ball | None = None
     lost_to_doubles: bool = False
     rows: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
-    stiff: bool = False
-    _examined: bool = field(default=False, repr=False)
-    _other: tuple[str, str] = field(default=("", ""), repr=False)
     _runs: dict[tuple[str, int], Run] = field(default_factory=dict, repr=False)
     _met: list[Floats] = field(default_factory=list, repr=False)
 
@@ -116,16 +109,7 @@ class Numerical(Motion):
         found = self._runs.get(key)
         if found is not None and (abs(found.end) >= abs(end) or found.singular):
             return found
-        try:
-            if key[1] == 1:
-                self._examine(self._rates_at_start, end)
-            self._runs[key] = self.steps(kind, end, found)
-        except GivenUp:
-            # Runs by another method differ by their errors, and are made anew.
-            self._runs.clear()
-            self.stiff, self._examined = not self.stiff, True
-            (self.name, self.why), self._other = self._other, (self.name, self.why)
-            return self.run(kind, end)
+        self._runs[key] = self.steps(kind, end, found)
         return self._runs[key]
 
     def steps(self, kind: str, end: float, since: Run | None = None) -> Run:
@@ -133,37 +117,16 @@ class Numerical(Motion):
         if since is not None and since.series.ndim == 4:
             # Searches go on and on: what they have behind them is not computed again. The series of doubles do not
             # hold what their compensated sums left.
-            more = self._followed(kind, end, since)
+            more = self.followed(kind, end, since)
             if more.starts[-1, 0] != more.starts[0, 0]:
                 found = since.followed_by(up_to_lost_rank(self.arrays, self.rows, more))
                 return self.steps(kind, end) if found.singular and self._takes_other_rows(found) else found
-        found = up_to_lost_rank(self.arrays, self.rows, self._followed(kind, end))
+        found = up_to_lost_rank(self.arrays, self.rows, self.followed(kind, end))
         return self.steps(kind, end) if found.singular and self._takes_other_rows(found) else found
 
-    def _followed(self, kind: str, end: float, since: Run | None = None) -> Run:
-        if self.stiff and end > 0.0:
-            return collocated(self.table, self.arrays, self.units, kind, end, since)
-        return integrate(self.table, self.arrays, self.units, kind, end, since, self._examined_on_the_way)
-
-    @cached_property
-    def _rates_at_start(self) -> Floats | None:
-        """Rates of decay, None where nothing decays."""
-        return rates_of_decay(self.arrays, *state(self.table, self.units)) if dissipates(self.arrays) else None
-
-    def _examined_on_the_way(self, q: Floats, v: Floats, end: float, steps: float) -> None:
-        """Examine once more where what is at the start does not say how many steps all of the time takes."""
-        if end > 0.0 and dissipates(self.arrays):
-            self._examine(rates_of_decay(self.arrays, q, v), end, steps)
-
-    def _examine(self, rates: Floats | None, end: float, steps: float | None = None) -> None:
-        """Raise `GivenUp` where the motion up to a time is stiff, and was not known to be."""
-        decay = None if self._examined or self.stiff else limiting_decay(rates, end, steps)
-        if decay is None:
-            return
-        fast = decay * two_to(-self.units.time)
-        limited = f"what decays at {fast:.3g} 1/s would limit the steps of its Taylor series, and not the motion"
-        self._other = "collocation", f"{self.why}; {limited}"
-        raise GivenUp
+    def followed(self, kind: str, end: float, since: Run | None = None) -> Run:
+        """Take steps to a time wherever rows keep their rank."""
+        return integrate(self.table, self.arrays, self.units, kind, end, since)
 
     def _takes_other_rows(self, run: Run) -> bool:
         """Take rows that keep their rank where a run ends, and before where others did; return whether there are."""
@@ -185,15 +148,20 @@ class Numerical(Motion):
         """Return the states, and how far they are from a run in pairs."""
         names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "reference")
         (q, v), (other, rate) = (self.by(kind, times) for kind in names)
-        share = _STIFF_SHARE if self.stiff else DOUBLES_SHARE if names[0] == "doubles" else FINE_SHARE
-        q_error, v_error = (self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
-        if self.lost_to_doubles or self.stiff:
-            q_error, v_error = 16.0 * q_error, 16.0 * v_error
-        elif finer:
+        share, factor = self.margins(names[0])
+        q_error, v_error = (factor * self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
+        if finer and factor < ALIKE_MARGIN:
             coarse = self.states(times)
             q_error = FINE_MARGIN * q_error + GROWTH * coarse.q_error
             v_error = FINE_MARGIN * v_error + GROWTH * coarse.v_error
         return States(q, v, q_error, v_error, (other, rate))
+
+    def margins(self, kind: str) -> tuple[float, float]:
+        """Return the share of the largest difference from its reference that each coordinate may miss beside its own.
+
+        And by what all differences are multiplied.
+        """
+        return DOUBLES_SHARE if kind == "doubles" else FINE_SHARE, ALIKE_MARGIN if self.lost_to_doubles else 1.0
 
     def _apart(self, first: Floats, second: Floats, share: float) -> Floats:
         """Return differences of places or rates, shape (t, n), with a share of the largest of all coordinates."""
@@ -226,19 +194,6 @@ class Numerical(Motion):
                 q[way], v[way] = evaluate(run, chosen)
         up = self.units.up[None, :, None]
         return q * up, v * up * two_to(-self.units.time)
-
-    def steps_about(
-        self, times: Floats, reach: Floats, kind: str, order: int
-    ) -> tuple[tuple[Floats, Floats], Floats, Floats] | None:
-        """Return the polynomials of its own steps about times, where the motion is stiff."""
-        end = float(np.max(times + reach)) * two_to(-self.units.time)
-        # A search may reach far beyond the first event: a motion that is not stiff is not followed for it.
-        if reach[0] <= 0.0 or not (self.stiff or limiting_decay(self._rates_at_start, end)):
-            return None
-        run = self.run(kind, end)
-        if not self.stiff:
-            return None
-        return pieces_of_steps(run, self.arrays.group, self.units, times, reach, order)
 
     def places_in_doubles(self, times: Floats) -> Floats:
         """Return coordinates alone, shape (t, n), without a reference: enough to count turns."""
@@ -329,14 +284,15 @@ def integrate(
     kind: str,
     end: float,
     since: Run | None = None,
-    on_the_way: OnTheWay | None = None,
+    gives_up: GivesUp | None = None,
 ) -> Run:
     """Take steps to a time in the units of the arrays, from the start, or from where the last step of a run starts.
 
     Parameters
     ----------
-    on_the_way : callable, optional
-        Called with places, rates, the time to be reached and the steps that this takes; it gives up a stiff motion.
+    gives_up : callable, optional
+        Called with places, rates, the time to be reached and the steps that this takes, when the arrays are full:
+        whether another method is better.
 
     Raises
     ------
@@ -344,8 +300,6 @@ def integrate(
         Where more steps would be needed than one part may take.
     AccuracyUnreachable
         Where the motion leaves the range of doubles, or a formula does not say how it goes on.
-    GivenUp
-        Where another method is better.
     """
     order, tolerance = {
         "doubles": (ORDER, TOLERANCE),
@@ -353,11 +307,7 @@ def integrate(
         "fine": (FINE_ORDER, FINE_TOLERANCE),
         "check": (CHECK_ORDER, CHECK_TOLERANCE),
     }[kind]
-    q, v = state(table, units)
-    clock, before = np.zeros(2), 0
-    if since is not None:
-        last = since.series[-1]
-        q, v, clock, before = last[:, 0].copy(), last[:, 1].copy(), since.starts[-2].copy(), len(since.series) - 1
+    (q, v), clock, before = begun(table, units, since)
     shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
     start = (q[:, 0], v[:, 0]) if kind == "doubles" else (q, v)
     take = advance if kind == "doubles" else advance_pairs
@@ -376,12 +326,11 @@ def integrate(
             )
         return ended, count
 
-    def examined(taken: int) -> None:
-        if on_the_way is not None:
-            on_the_way(q, v, end, taken * end / clock[0])
+    def stops(taken: int) -> bool:
+        return gives_up is not None and gives_up(q, v, end, taken * end / clock[0])
 
     many = max(16, _CHUNK // (16 * len(q) * (order + 1)))
-    return run_by(steps, start, shape, many, clock, before, examined)
+    return run_by(steps, start, shape, many, clock, before, stops)
 
 
 def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:

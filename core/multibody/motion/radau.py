@@ -15,14 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb_mat, fmpz_poly
-from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Complexes, Floats
 from core.balls import precision
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair
-
-Complexes = NDArray[np.complex128]
 
 COEFFICIENT_BITS = 400
 """Precision of the coefficients: the inverse of a Vandermonde matrix of 24 nodes loses a hundred bits."""

@@ -9,20 +9,18 @@ import numpy as np
 
 from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable, BudgetExceeded
+from core.multibody.equations.packed import Units, state
 from core.multibody.motion.series import DONE, FULL, LOST, SLOWED, sampled
 from core.multibody.motion.series_pairs import sampled_pairs
+from core.multibody.table.table import Table
 
 MOST_STEPS = 20000
 """Steps that one part of a scene may take in one direction of time."""
 
 
-class GivenUp(Exception):
-    """A run goes on better by another method."""
-
-
 @dataclass
 class Run:
-    """Steps in one direction: where they start, their coefficients, and whether a singular place ended them.
+    """Steps in one direction: where they start, their coefficients, and what ended them before the time asked for.
 
     Attributes
     ----------
@@ -30,8 +28,11 @@ class Run:
         Times, as pairs, and the end of the last step.
     series : ndarray, shape (s, n, order + 1) or (s, n, order + 1, 2)
     singular : bool
+        Whether a singular place did.
     slowed : bool
         Whether a slip that may end is beyond the unit of time.
+    given_up : bool
+        Whether another method goes on better.
     room : ndarray or None
         What the series is the first part of, where there is room for more.
     """
@@ -40,6 +41,7 @@ class Run:
     series: Floats
     singular: bool = False
     slowed: bool = False
+    given_up: bool = False
     room: Floats | None = field(default=None, repr=False)
 
     @property
@@ -56,7 +58,7 @@ class Run:
             room[:kept] = self.series[:kept]
         room[kept:total] = more.series
         starts = np.concatenate([self.starts[:kept], more.starts])
-        return Run(starts, room[:total], more.singular, more.slowed, room)
+        return Run(starts, room[:total], more.singular, more.slowed, more.given_up, room)
 
     def which(self, times: Floats) -> Integers:
         """Return the step in which each time lies."""
@@ -73,7 +75,7 @@ def run_by(
     many: int,
     clock: Floats | None = None,
     before: int = 0,
-    examined: Callable[[int], None] | None = None,
+    gives_up: Callable[[int], bool] | None = None,
 ) -> Run:
     """Return a run by a function that takes steps until its arrays are full.
 
@@ -91,8 +93,8 @@ def run_by(
         When they start, as a pair; moved along. Zero if omitted.
     before : int
         How many were taken until then.
-    examined : callable, optional
-        Called with the number of steps whenever there is no more room for others.
+    gives_up : callable, optional
+        Called with the number of steps whenever there is no more room for others: whether another method is better.
 
     Raises
     ------
@@ -100,13 +102,11 @@ def run_by(
         Where more steps would be needed than one part may take.
     AccuracyUnreachable
         Where the motion leaves the range of doubles.
-    GivenUp
-        By `examined`, where another method is better.
     """
     clock = np.zeros(2) if clock is None else clock
     starts, series = [], []
-    taken, ended = 0, FULL
-    while ended == FULL:
+    taken, ended, given_up = 0, FULL, False
+    while ended == FULL and not given_up:
         if before + taken > MOST_STEPS:
             raise BudgetExceeded("steps", before + taken, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
         chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
@@ -114,18 +114,29 @@ def run_by(
         starts.append(chunk_starts[:count])
         series.append(chunk[:count])
         taken += count
-        if ended == FULL and examined is not None:
-            examined(before + taken)
+        given_up = ended == FULL and gives_up is not None and gives_up(before + taken)
     if ended == LOST:
         raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
     starts.append(clock[None, :].copy())
+    singular, slowed = ended not in (DONE, SLOWED) and not given_up, ended == SLOWED
     if not taken:
         # A run of no duration has one step, so that the start can be evaluated.
         single = np.zeros((1, *shape))
         single[0, :, 0], single[0, :, 1] = start
-        return Run(np.array([clock, clock]), single, ended not in (DONE, SLOWED), ended == SLOWED)
+        return Run(np.array([clock, clock]), single, singular, slowed)
     found = series[0] if len(series) == 1 else np.concatenate(series)
-    return Run(np.concatenate(starts), found, ended not in (DONE, SLOWED), ended == SLOWED)
+    return Run(np.concatenate(starts), found, singular, slowed, given_up)
+
+
+def begun(table: Table, units: Units, since: Run | None) -> tuple[tuple[Floats, Floats], Floats, int]:
+    """Return the state from which steps are taken, when, and how many were before: at the start, or on from a run.
+
+    The last step of that, which ends at a time that was asked for, is taken once more.
+    """
+    if since is None:
+        return state(table, units), np.zeros(2), 0
+    last = since.series[-1]
+    return (last[:, 0].copy(), last[:, 1].copy()), since.starts[-2].copy(), len(since.series) - 1
 
 
 def evaluate(run: Run, times: Floats, tails: Floats | None = None) -> tuple[Floats, Floats]:

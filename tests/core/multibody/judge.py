@@ -25,6 +25,7 @@ from core.multibody.algebra.polynomials import BITS
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.equations.dynamics import accelerations, parts, restricted
 from core.multibody.equations.packed import state, two_to
+from core.multibody.motion.modelling import followed
 from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.series import DONE, FULL
 from core.multibody.motion.series_pairs import advance_pairs, moved_pairs
@@ -48,7 +49,7 @@ def numerical(description: dict[str, Any]) -> list[Numerical]:
     for indices in parts(small):
         part = restricted(small, indices)
         gain, chosen = accelerations(part)
-        motions.append(Numerical.of(part, gain, chosen, "a test"))
+        motions.append(followed(part, gain, chosen, "a test"))
     return motions
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from core.balls import precision
 from core.multibody.algebra.polynomials import BITS
+from core.multibody.motion.dissipative import Dissipative
 from core.multibody.motion.stiff import limiting_decay
 from core.multibody.solve import solve_scene
 from tests.core.multibody.judge import judged, numerical
@@ -38,6 +39,7 @@ def test_errors_are_never_stated_too_small(seed: int) -> None:
     """The judge is a series of order 40, which is limited by what decays fast, and so asked for short times."""
     with precision(BITS):
         for motion in numerical(stiff_linkage(seed)):
+            assert isinstance(motion, Dissipative)
             motion.stiff, time = True, 0.1
             for finer in (False, True):
                 found = motion.states(np.array([time]), finer=finer)
@@ -62,3 +64,20 @@ def test_a_stiff_governor_settles_in_its_equilibrium() -> None:
 def test_what_takes_no_time_is_not_stiff() -> None:
     assert limiting_decay(np.array([[-1e6, 0.0]]), 0.0, 0.0) is None
     assert limiting_decay(np.array([[0.0, 1.0]]), 1.0, 0.0) is None
+
+
+def test_a_stiff_motion_whose_steps_become_too_short_is_followed_by_its_series() -> None:
+    """Drawn by c/x against a damper of c it reaches x = 0 after some x^2/2; its inertia takes a little longer."""
+    scene = {
+        "bodies": {"bead": {"mass": 1, "at": [0.5, 0]}},
+        "connections": [
+            {"kind": "track", "place": "bead", "on": {"at": [0, 0], "slope": 0}},
+            {"kind": "damper", "a": "bead", "b": [10, 0], "coefficient": 1e4},
+            {"kind": "force", "name": "pull", "place": "bead", "force": ["-1e4/x", 0]},
+        ],
+    }
+    early, late = (solve_scene(read(scene), [0.0, end], ("trajectory",)) for end in (0.1, 1.0))
+    assert (early.model.name, late.model.name) == ("collocation", "Taylor series")
+    assert late.ended is not None
+    assert (late.ended.kind, late.ended.name) == ("formula", "pull")
+    assert 0.125 < late.ended.time < 0.126
