@@ -360,7 +360,7 @@ TESTED_IN |= {
             "members/lane_doubles members/lane_pairs members/lane_series members/lane_space members/lane_table "
             "members/many members/member_columns members/plan"
         ),
-        "members/test_recorded_balls": "algebra/square_systems",
+        "members/test_recorded_balls": "algebra/recordable algebra/square_systems",
         "language/test_scene": (
             "language/body language/connection language/contacts language/forces language/joints language/reading "
             "language/strings"

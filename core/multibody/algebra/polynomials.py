@@ -32,11 +32,6 @@ BITS = 320
 """Working precision of the set-up: differences of 1e-90 of the terms are taken as zero."""
 
 
-def recorded_among(numbers: Iterable[Any]) -> Any:
-    """Return one of the numbers that is no ball but records what is done with it, None where none is."""
-    return next((x for x in numbers if type(x) is not arb), None)
-
-
 def larger(first: Ball, second: Ball) -> Ball:
     """Return the larger of two numbers, of which either may be recorded."""
     return second.max(first) if type(first) is arb else first.max(second)

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from core.multibody.algebra.polynomials import ZERO, Ball, is_zero, recorded_among
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.recordable import recordable
 
 Line = dict[int, Ball]
 
@@ -114,22 +115,16 @@ def independent(lines: Iterable[Mapping[int, Ball]], share: float = 0.0) -> list
     return sorted(found)
 
 
+@recordable
 def largest_of(numbers: Sequence[Ball]) -> int:
     """Return the place of the largest magnitude among numbers, to the digits of doubles."""
-    recorded = recorded_among(numbers)
-    if recorded is not None:
-        found: int = recorded.applied(largest_of, numbers)
-        return found
     sizes = [abs(float(x.mid())) for x in numbers]
     return sizes.index(max(sizes))
 
 
+@recordable
 def is_share_of(numbers: Sequence[Ball], share: float, others: Sequence[Ball]) -> bool:
     """Return whether the largest of numbers is at most a share of the largest of others, to the digits of doubles."""
-    recorded = recorded_among([*numbers, *others])
-    if recorded is not None:
-        found: bool = recorded.applied(is_share_of, numbers, share, others)
-        return found
     sizes, whole = ([abs(float(x.mid())) for x in one] for one in (numbers, others))
     return max(sizes, default=0.0) <= share * max(whole, default=0.0)
 

@@ -17,7 +17,8 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats, Integers
-from core.multibody.algebra.polynomials import ZERO, Ball, recorded_among
+from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.recordable import deciding
 from core.multibody.equations.expansion import expansion
 from core.multibody.laws.kernel import PackedLaws
 from core.multibody.laws.law import Law
@@ -142,24 +143,18 @@ class Units:
         return self.action - 2 * self.time + self.rows[row]
 
 
+@deciding
 def exponent(ball: Ball) -> int | None:
     """Return the exponent of two of a number, None of zero."""
-    if type(ball) is not arb:
-        # One that is recorded has it for a decision.
-        found: int | None = ball.decided(exponent, ball)
-        return found
     if 0 in ball:
         return None
     mantissa, power = ball.mid().man_exp()
     return int(power) + int(abs(mantissa)).bit_length()
 
 
+@deciding
 def largest_exponent(balls: Sequence[Ball]) -> int | None:
     """Return the exponent of two of the largest of some numbers, None where all are zero or there are none."""
-    recorded = recorded_among(balls)
-    if recorded is not None:
-        found: int | None = recorded.decided(largest_exponent, balls)
-        return found
     return _most([exponent(x) for x in balls])
 
 

@@ -20,6 +20,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from core.errors import InvalidParameter
+from core.multibody.algebra.orthogonal_rests import least_rest
 from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
@@ -32,16 +33,17 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     is_zero,
     product,
-    recorded_among,
     substituted,
 )
 from core.multibody.algebra.rank import Elimination, Line, independent
+from core.multibody.algebra.recordable import recordable
 from core.multibody.reduction.free_places import FreePlaces, tangent_directions
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.table.table import Row, Table
 
 _INDEPENDENT = 1e-6
-"""Ratio of singular values in doubles from which lines are independent for certain: far above their rounding."""
+"""Share of a line that is left beside others in doubles from which it does not depend on them for certain: far above
+their rounding, also where those leave as little of one another."""
 
 
 def resolve(state: Reduced) -> bool:
@@ -60,20 +62,10 @@ def _may_depend(table: Table, rows: Sequence[Row]) -> bool:
     return dependent_in_doubles([[entry(line, j) for j in range(len(table.names))] for line in lines])
 
 
+@recordable
 def dependent_in_doubles(rows: Sequence[Sequence[Ball]]) -> bool:
     """Return whether lines may depend on one another, as far as doubles tell."""
-    recorded = recorded_among(x for row in rows for x in row)
-    if recorded is not None:
-        found: bool = recorded.applied(dependent_in_doubles, rows)
-        return found
-    lines = np.array([[float(x.mid()) for x in row] for row in rows])
-    size = np.max(np.abs(lines), axis=1)
-    if len(rows) > lines.shape[1] or not np.all(size > 0.0) or not np.all(np.isfinite(size)):
-        return True
-    if len(rows) == 1:
-        return False
-    singular = np.linalg.svd(lines / size[:, None], compute_uv=False)
-    return bool(singular[-1] <= _INDEPENDENT * singular[0])
+    return not least_rest(np.array([[float(x.mid()) for x in row] for row in rows])) > _INDEPENDENT
 
 
 def _dependent(table: Table, rows: Sequence[Row]) -> Iterator[tuple[int, Poly]]:
