@@ -124,7 +124,8 @@ class Schedule:
     def passages(self, phase: Phase) -> Iterator[tuple[Entry, Watch]]:
         """Yield what is watched in a phase: quantities that have not passed through their values often enough.
 
-        A value that has been jumped over at the start of the phase is counted.
+        A value that has been jumped over at the start of the phase is counted, and one that is passed just there, at
+        the instant of what has ended the last phase.
 
         Raises
         ------
@@ -143,10 +144,9 @@ class Schedule:
                 rule = "name a column of the answer, or a component of one, that is no length and no attitude"
                 raise InvalidParameter(passed.path, rule)
             side, power = _side(one, passed, expansions)
-            if entry.side and side and power == 0 and side != entry.side:
+            if entry.side and side and side != entry.side:
                 entry.passages += 1
-            if not (entry.side and power):
-                entry.side = side or entry.side
+            entry.side = side or entry.side
             watch = Watch(
                 -1,
                 "value",

@@ -7,7 +7,7 @@ over of the change of kinetic energy.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -16,6 +16,7 @@ from flint import arb
 
 from core.arrays import Floats, Integers
 from core.errors import NotApplicable
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.contacts.contact_states import force_names
 from core.multibody.equations.packed import nearest, pair
 from core.multibody.motion.numerical import BEFORE_SINGULAR
@@ -105,9 +106,7 @@ class Sums:
         for one in self.motion.unilateral:
             found |= {f"{one.name}.{FRICTION}": self._sum()} if one.slip is not None else {}
             found[f"{one.name}.{IMPACTS}"] = self._sum()
-        # What begins and strikes takes or brings energy at its own times alone.
-        sudden = {f"{name}.{IMPACTS}" for _, name, _ in self.motion.impacts} - found.keys()
-        found |= {name: self._sum() for name in sorted(sudden)}
+        found |= self._sudden(found)
         unknown: set[str] = set()
         phase = -1
         timed = {k for one in measures.timed.values() for k in one.works}
@@ -115,8 +114,6 @@ class Sums:
             if piece.number != phase:
                 phase = piece.number
                 self._impacts(found, unknown, phase)
-            for name in sudden:
-                self._put(found[name], *_nothing(*self._local(number, piece)))
             for k, work in enumerate(piece.whole.measures.works):
                 name = f"{work.name}.work"
                 if work.potential is not None:
@@ -140,6 +137,17 @@ class Sums:
 
     def _sum(self) -> _Sum:
         return _Sum(np.zeros(len(self.times)), np.zeros(len(self.times)))
+
+    def _sudden(self, others: Collection[str]) -> dict[str, _Sum]:
+        """Return the sums of what begins and strikes, which takes or brings energy at its own times alone."""
+        phases, found = np.array([piece.number for piece in self.pieces])[self.where], dict[str, _Sum]()
+        for number, name, work in sorted(self.motion.impacts, key=lambda one: one[1]):
+            if f"{name}.{IMPACTS}" in others or work is None:
+                continue
+            one, (value, error) = found.setdefault(f"{name}.{IMPACTS}", self._sum()), _rounded(work)
+            one.values[phases >= number] += value
+            one.errors[phases >= number] += error
+        return found
 
     def _column(self, one: _Sum, unit: str) -> Column:
         # What a single stretch has come to is not added to anything.
@@ -220,7 +228,7 @@ class Sums:
             if work is None:
                 unknown.add(f"{name}.{IMPACTS}")
             else:
-                found[f"{name}.{IMPACTS}"].add(float(work), float(work.rad()) + 2.0**-52 * abs(float(work)))
+                found[f"{name}.{IMPACTS}"].add(*_rounded(work))
 
     def _rub(
         self, found: dict[str, _Sum], unknown: set[str], i: int, one: Unilateral, number: int, piece: Stretch
@@ -292,6 +300,11 @@ def _sized(function: Callable[[State], Floats]) -> Power:
         return found, np.abs(found)
 
     return sized
+
+
+def _rounded(work: Ball) -> tuple[float, float]:
+    """Return a work as a double, and by how much that is wrong at most."""
+    return float(work), float(work.rad()) + 2.0**-52 * abs(float(work))
 
 
 def _nothing(mine: Integers, times: Floats) -> tuple[Integers, Floats, Floats]:

@@ -480,6 +480,26 @@ def test_the_audit_refuses_an_occasion_at_another_time(monkeypatch: pytest.Monke
         solved([1.0], connections=[rod_until(0.5)], **BOB)
 
 
+@pytest.mark.parametrize("gravity", [[0, 0], [0, -10]])
+@pytest.mark.parametrize("time", [0.25, 0.5, "1/3"])
+def test_a_value_that_is_passed_at_the_time_of_another_event_counts(time: Any, gravity: list[float]) -> None:
+    when = {"when": {"quantity": "bob.position.x", "equals": time}}
+    blow = {"kind": "impulse", "place": "bob", "impulse": [0, 3]}
+    found = solved(
+        [1.0],
+        gravity=gravity,
+        bodies={"bob": {"mass": 1, "at": [0, 0], "velocity": [1, 0]}},
+        connections=[{**blow, "at": time}, {**blow, "at": when}, {**blow, "at": when}],
+    )
+    at = float(mpmath.mpf(1) / 3) if time == "1/3" else time
+    assert [(one.name, one.time) for one in found.events] == [(f"impulse-{k}", at) for k in (1, 2, 3)]
+    np.testing.assert_allclose(column(found, "bob.velocity"), [[1, 9 + gravity[1]]], rtol=1e-14)
+    for k in (1, 2, 3):
+        # J (v + v')/2.
+        work = 3 * (3 * k - 1.5 + gravity[1] * at)
+        assert column(found, f"impulse-{k}.impacts.work")[0] == pytest.approx(work, rel=1e-13)
+
+
 @pytest.mark.parametrize("until", [{"event": {"name": "r"}}, {"event": {"kind": "begin", "name": "r"}}, 0.25])
 def test_a_rod_that_begins_and_ends_at_once_takes_the_speed_along_it(until: Any) -> None:
     begin = {"when": {"quantity": "bob.velocity.y", "equals": -5}}
