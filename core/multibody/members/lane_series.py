@@ -28,29 +28,28 @@ def lane_changes(form: LaneForm, space: LaneSpace, k: int) -> None:
 
 
 @kernel(forceinline=True)
-def _two_sums(series: Floats, a: int, b: int, c: int, d: int, behind: int, of_power: int) -> Pair:
-    """Return two sums of products of coefficients, those in the middle first, then the newest.
+def _middle(series: Floats, a: int, b: int, behind: int, of_power: int) -> Pair:
+    """Return the sums of the products of coefficients in the middle, of order k and of the next.
 
-    The products of a and b, and of c and d, which do not wait for one another.
+    In both stand coefficients up to k alone: what is read for one does for the other.
     """
-    first, second = alike(0.0), alike(0.0)
+    total, following = alike(0.0), alike(0.0)
+    second = lanes_at(series, b + behind)
     for up in range(of_power, behind, of_power):
-        down = behind - up
-        first = fma(lanes_at(series, a + up), lanes_at(series, b + down), first)
-        second = fma(lanes_at(series, c + up), lanes_at(series, d + down), second)
-    first = fma(lanes_at(series, a), lanes_at(series, b + behind), first)
-    second = fma(lanes_at(series, c), lanes_at(series, d + behind), second)
+        first = lanes_at(series, a + up)
+        following = fma(first, second, following)
+        second = lanes_at(series, b + behind - up)
+        total = fma(first, second, total)
     if behind > 0:
-        first = fma(lanes_at(series, a + behind), lanes_at(series, b), first)
-        second = fma(lanes_at(series, c + behind), lanes_at(series, d), second)
-    return first, second
+        following = fma(lanes_at(series, a + behind), second, following)
+    return total, following
 
 
 @kernel()
 def lane_coefficients(form: LaneForm, space: LaneSpace, since: int) -> None:
     """Fill in the Taylor coefficients from since + 2 on, in doubles, the earlier ones being taken up."""
     n, size, x, products = form.n, form.n + form.m, space.x, form.products
-    series, right, columns = space.series[0], space.right[0], space.columns[0]
+    series, right, columns, middle = space.series[0], space.right[0], space.columns[0], space.middle
     of_power, last = WIDTH * form.series, space.series.shape[1] - 3
     for k in range(since, last + 1):
         now = k * of_power
@@ -63,13 +62,18 @@ def lane_coefficients(form: LaneForm, space: LaneSpace, since: int) -> None:
             i, j = WIDTH * form.stiff_at[p, 0], now + WIDTH * form.stiff_at[p, 1]
             factor = lanes_at(x, WIDTH * (form.stiff + 2 * p))
             put_lanes(right, i, lanes_at(right, i) - factor * lanes_at(series, j))
-        for p in range(0, products.shape[0], 2):
-            a, b = WIDTH * products[p, 1], WIDTH * products[p, 2]
-            c, d = WIDTH * products[p + 1, 1], WIDTH * products[p + 1, 2]
-            first, second = _two_sums(series, a, b, c, d, now, of_power)
-            row, other = WIDTH * products[p, 0], WIDTH * products[p + 1, 0]
-            put_lanes(right, row, fma(lanes_at(x, WIDTH * products[p, 3]), first, lanes_at(right, row)))
-            put_lanes(right, other, fma(lanes_at(x, WIDTH * products[p + 1, 3]), second, lanes_at(right, other)))
+        for p in range(products.shape[0]):
+            a, b, row = WIDTH * products[p, 1], WIDTH * products[p, 2], WIDTH * products[p, 0]
+            if (k - since) % 2 == 0:
+                total, following = _middle(series, a, b, now, of_power)
+                put_lanes(middle, WIDTH * p, following)
+            else:
+                total = lanes_at(middle, WIDTH * p)
+            # The newest coefficients come last.
+            total = fma(lanes_at(series, a), lanes_at(series, b + now), total)
+            if k > 0:
+                total = fma(lanes_at(series, a + now), lanes_at(series, b), total)
+            put_lanes(right, row, fma(lanes_at(x, WIDTH * products[p, 3]), total, lanes_at(right, row)))
         for i in range(n, size):
             put_lanes(right, WIDTH * i, lanes_at(right, WIDTH * i) * alike(-(k + 1.0)))
         for i in range(size):

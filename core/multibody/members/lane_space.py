@@ -32,8 +32,9 @@ class LaneSpace(NamedTuple):
     series : (planes, order + 1, LaneForm.series, 8)
         Coefficients, so that coefficient k of every product is the sum of a_i b_{k-i}: those of multipliers stand one
         place later, behind a zero, those of the entries of W one place earlier.
-    right : (planes, s + 1, 8)
-        The last row is that of what fills up products to an even number.
+    middle : (p', 8)
+        Of the coefficients that follow of products, what is known of them one order before.
+    right : (planes, s, 8)
     columns : (planes, s, s, 8)
         Of the inverse: column j at [:, j].
     rows, inverse : (s, s, 8)
@@ -54,6 +55,7 @@ class LaneSpace(NamedTuple):
     h: Floats
     lines: Floats
     series: Floats
+    middle: Floats
     right: Floats
     columns: Floats
     rows: Floats
@@ -82,7 +84,8 @@ def lane_space(form: LaneForm, order: int, planes: int) -> LaneSpace:
         np.zeros(WIDTH),
         np.zeros((2, count, WIDTH)),
         np.zeros((planes, order + 1, form.series, WIDTH)),
-        np.zeros((planes, size + 1, WIDTH)),
+        np.zeros((form.products.shape[0], WIDTH)),
+        np.zeros((planes, size, WIDTH)),
         np.zeros((planes, size, size, WIDTH)),
         np.zeros((size, size, WIDTH)),
         np.zeros((size, size, WIDTH)),

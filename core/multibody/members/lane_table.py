@@ -30,7 +30,7 @@ class LaneForm(NamedTuple):
         same entry.
     products : ndarray of int, shape (p', 4)
         Row on the right-hand side, the series of both factors, and the place of the number by which the product is
-        multiplied. Of an even number, as two are formed at a time: the last may be of no row.
+        multiplied.
     series : int
         How many there are: those of coordinates, rates, multipliers, and entries of W that vary.
     """
@@ -69,8 +69,6 @@ def form_of(table: Packed) -> LaneForm:
         if e in place:
             products += [(j, 2 * n + r, place[e], 0), (n + r, place[e], n + j, 0)]
     products += [(i, j, n + k, gyre + 2 * g) for g, (i, j, k) in enumerate(table.gyre_at.tolist())]
-    if len(products) % 2:
-        products.append((n + m, 0, 0, 0))
     return LaneForm(
         n,
         m,
