@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import permutations
 
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.formulation.lagrange import LagrangeEquations
 from core.multibody.formulation.trigonometric_sums import TIME, Sum, Term, Variable, added
+
+_AXES = (["x"], ["y"], ["z"])
 
 ENERGY = "energy"
 """The kind of a conserved energy, the sum of the kinetic and the potential one."""
@@ -35,36 +39,77 @@ class Conserved:
         return f"{self.kind} of {self.of}" if self.of else self.kind
 
 
-def conserved_of_part(found: LagrangeEquations) -> list[Conserved]:
-    """Return what is constant along every motion of a part that satisfies its rows."""
-    kept = []
+def energy_of_part(found: LagrangeEquations) -> list[Conserved]:
+    """Return the energy, or Jacobi's integral, where it is constant along every motion that satisfies the rows."""
     # What holds a row does no work along it; of a row that is driven, or that rubs, some of its power is left.
     power = added([*(Sum.variable(name, 1) * one for name, one in found.equations.items()), found.multiplier_power])
     momenta = {name: found.kinetic.derivative(Variable(name, 1)) for name in found.equations}
     energy = added(Sum.variable(name, 1) * one for name, one in momenta.items()) - found.kinetic + found.potential
     if energy and not power - energy.rate():
         driven = TIME in energy.names() or bool(energy - found.kinetic - found.potential)
-        kept.append(Conserved("Jacobi integral" if driven else ENERGY, ", ".join(found.equations), energy))
-    for name, equation in found.equations.items():
-        momentum = _integral(equation)
-        if momentum:
-            kept.append(Conserved("momentum", name, momentum))
+        return [Conserved("Jacobi integral" if driven else ENERGY, ", ".join(found.equations), energy)]
+    return []
+
+
+@dataclass(frozen=True)
+class _Combination:
+    """A combination of equations: what it is the derivative by time of, and what of it is left beside that.
+
+    Attributes
+    ----------
+    kind : str
+    of : tuple of str
+        The variables whose equations it contains.
+    integral, left : Sum
+    """
+
+    kind: str
+    of: tuple[str, ...]
+    integral: Sum
+    left: Sum
+
+    @classmethod
+    def of_equation(cls, kind: str, of: tuple[str, ...], equation: Sum) -> _Combination:
+        """Take an equation of motion, or one times a place, apart."""
+        names = [variable.name for term in equation.terms for variable, _ in term.factors if variable.order == 2]
+        first = added(equation.derivative(Variable(name, 2)) * Sum.variable(name, 1) for name in dict.fromkeys(names))
+        rest = (equation - first.rate()).terms
+        # What is left of a motion with gyroscopic forces is a rate times a function of its variable alone.
+        parts = {term: _of_one(term, value) for term, value in rest.items()}
+        integral = added([first, *(part for part in parts.values() if part is not None)])
+        return cls(kind, of, integral, Sum({term: rest[term] for term, part in parts.items() if part is None}))
+
+    def without(self, term: Term, other: _Combination) -> _Combination:
+        """Add the multiple of another that takes a term from what is left."""
+        factor = -self.left.terms[term] / other.left.terms[term]
+        left = dict((self.left + other.left.times(factor)).terms)
+        left.pop(term, None)
+        integral = self.integral + other.integral.times(factor)
+        return _Combination(self.kind, tuple(dict.fromkeys((*other.of, *self.of))), integral, Sum(left))
+
+
+def momenta(equations: Mapping[str, Sum]) -> list[Conserved]:
+    """Return the combinations of equations that are derivatives by time, as far as their factors are simple.
+
+    These are numbers, as for a momentum along a line, and places along another axis of the same body, as for an angular
+    momentum. Whatever is left beside derivatives, such as what bodies do to one another, is eliminated.
+    """
+    pending = [_Combination.of_equation("momentum", (name,), equation) for name, equation in equations.items()]
+    turning = {name for one in equations.values() for name in one.in_waves()}
+    places = [name.split(".") for name in reversed(equations) if name not in turning]
+    along = [(body, ".".join((body, *axis))) for body, *axis in places if axis in _AXES]
+    for (body, x), (other, y) in permutations(along, 2):
+        if body == other:
+            pending.append(_Combination.of_equation("angular momentum", (y,), Sum.variable(x) * equations[y]))
+    kept = []
+    while pending:
+        one, *pending = pending
+        if one.left:
+            term = next(iter(one.left.terms))
+            pending = [other.without(term, one) if term in other.left.terms else other for other in pending]
+        elif one.integral:
+            kept.append(Conserved(one.kind, ", ".join(sorted(one.of, key=[*equations].index)), one.integral))
     return kept
-
-
-def _integral(equation: Sum) -> Sum | None:
-    """Return the function of places and rates of which an equation is the derivative by time, None without one."""
-    names = [variable.name for term in equation.terms for variable, _ in term.factors if variable.order == 2]
-    first = added(equation.derivative(Variable(name, 2)) * Sum.variable(name, 1) for name in dict.fromkeys(names))
-    rest = equation - first.rate()
-    # What is left of a motion with gyroscopic forces is a rate times a function of its variable alone.
-    parts = [first]
-    for term, value in rest.terms.items():
-        part = _of_one(term, value)
-        if part is None:
-            return None
-        parts.append(part)
-    return added(parts)
 
 
 def _of_one(term: Term, value: Ball) -> Sum | None:

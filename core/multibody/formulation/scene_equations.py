@@ -15,7 +15,7 @@ from core.multibody.equations_answer import ConservedQuantity, CoordinateAtStart
 from core.multibody.formulation.body_angles import angle_of_body
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.closed_forms import closed_forms
-from core.multibody.formulation.conserved import ENERGY, Conserved, conserved_of_part
+from core.multibody.formulation.conserved import ENERGY, Conserved, energy_of_part, momenta
 from core.multibody.formulation.constants import Constants
 from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
@@ -48,6 +48,7 @@ class _Written:
     forces: dict[str, Node] = field(default_factory=dict)
     lagrangian: list[Sum] | None = field(default_factory=list)
     conserved: list[tuple[Conserved, Ball]] = field(default_factory=list)
+    motion: dict[str, Sum] = field(default_factory=dict)
     linear: list[LinearEquations] = field(default_factory=list)
     closed: dict[str, Node] = field(default_factory=dict)
     numbers: dict[str, Ball] = field(default_factory=dict)
@@ -95,6 +96,8 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
             _write_part(written, piece, motion, [symbols[i] for i in piece.indices], own, given)
         else:
             _write_body(written, body, symbols[piece.indices[0]].partition(".")[0], piece)
+    # The angular momentum of a body may be one of parts that are apart.
+    written.conserved += [(one, one.formula.value(written.start, written.rates)) for one in momenta(written.motion)]
     if any(row.slide is not None for row in found.described.measures.table.rows):
         written.why.append("friction that turns with the slip is written with the direction that it starts with")
     conserved = _with_one_energy(found, written.conserved, len(moving))
@@ -191,7 +194,10 @@ def _write_part(
         written.lagrangian = None
     elif written.lagrangian is not None:
         written.lagrangian.append(found.lagrangian)
-    _conserve(written, conserved_of_part(found), piece.table, chart.start, chart.rates)
+    _conserve(written, energy_of_part(found), piece.table, chart.start, chart.rates)
+    if not any(row.slide is not None for row in table.rows):
+        # Others are written with the direction of friction at the start, and hold then alone.
+        written.motion |= found.equations
     if not multipliers and not piece.table.acting:
         written.linear += linear_equations(found.equations, chart.start)
     written.start |= chart.start
