@@ -131,7 +131,10 @@ def _letting_go(table: Table, pinned: set[int]) -> set[int]:
         pivot = min(pivots, default=None)
         if pivot is None:
             changing = {n: line for n, line in holding.items() if any(set(poly) != {()} for poly in line.values())}
-            return {number for number, line in changing.items() if len(line) == 1 or linear[number]}
+            directions = pinned.difference(heavy, *linear.values())
+            return {
+                n for n, line in changing.items() if (len(line) == 1 or linear[n]) and not directions.issuperset(line)
+            }
         _, number, j = pivot
         first = holding.pop(number)
         for other, line in holding.items():
