@@ -96,7 +96,7 @@ def momenta(equations: Mapping[str, Sum]) -> list[Conserved]:
     """
     pending = [_Combination.of_equation("momentum", (name,), equation) for name, equation in equations.items()]
     turning = {name for one in equations.values() for name in one.in_waves()}
-    places = [name.split(".") for name in reversed(equations) if name not in turning]
+    places = [name.split(".") for name in reversed([*equations]) if name not in turning]
     along = [(body, ".".join((body, *axis))) for body, *axis in places if axis in _AXES]
     for (body, x), (other, y) in permutations(along, 2):
         if body == other:
