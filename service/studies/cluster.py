@@ -11,6 +11,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from service.settings import Settings
+from service.studies.folder import make_private
 
 CONNECTING = 1.5
 """Seconds in which an existing scheduler must have accepted a client."""
@@ -82,20 +83,23 @@ class Cluster:
                 "distributed.scheduler.allowed-failures": 0,
                 "distributed.worker.multiprocessing-method": "forkserver",
                 "distributed.worker.profile.enabled": False,
-                # Its pages are not needed, and would tell every user of the machine what is computed.
-                "distributed.scheduler.http.routes": ["distributed.http.health"],
-                "distributed.worker.http.routes": ["distributed.http.health"],
+                # Pages would tell every user of the machine what is computed.
+                "distributed.scheduler.http.routes": [],
+                "distributed.worker.http.routes": [],
             }
         )
         # Whoever connects to a Dask process runs code in it: every connection needs the certificate that is made
         # here for this cluster, and that only its processes are given.
         security = Security.temporary()
+        make_private(self._scratch)
         self._local = LocalCluster(
             security=security,
             n_workers=workers,
             threads_per_worker=1,
             memory_limit=memory // workers,
+            # Its HTTP server cannot be left out; the dashboard, which it has where bokeh is installed, can.
             dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": False},
             local_directory=str(self._scratch),
             silence_logs=logging.CRITICAL,
         )

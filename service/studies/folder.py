@@ -24,6 +24,12 @@ def data_folder(settings: Settings) -> Path:
     return Path(base) / "polhode"
 
 
+def make_private(folder: Path) -> None:
+    """Make a folder into which nobody else can look, whatever the file mode creation mask and the folders above."""
+    folder.mkdir(parents=True, exist_ok=True)
+    folder.chmod(0o700)
+
+
 class Ownership:
     """The right to work on the studies of a folder, which one process has at a time.
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from service.studies.folder import make_private
 from service.studies.results import Results, values
 
 MEDIA_TYPE = "application/vnd.zarr+zip"
@@ -35,7 +36,7 @@ def grid(results: Results, folder: Path) -> Iterator[bytes]:
         names([column["pointer"] for column in about["columns"]]),
     )
     dimensions = axes if product else ["member"]
-    folder.mkdir(parents=True, exist_ok=True)
+    make_private(folder)
     with tempfile.TemporaryDirectory(dir=folder) as place:
         file = Path(place) / "study.zarr.zip"
         with ZipStore(file, mode="w") as store:

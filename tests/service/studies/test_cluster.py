@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import gc
+import os
 import socket
 import ssl
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 from distributed import Client
 from distributed.security import Security
@@ -21,8 +24,13 @@ PATIENCE = "5s"
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    made = Cluster(Settings(study_workers=1), tmp_path_factory.mktemp("scratch"))
+    before = os.umask(0)
+    # Within a folder that everybody may look into, as one that was there before may be.
+    folder = tmp_path_factory.mktemp("data")
+    folder.chmod(0o755)
+    made = Cluster(Settings(study_workers=1), folder / "scratch")
     made.open()
+    os.umask(before)
     yield made
     made.close()
 
@@ -75,6 +83,24 @@ def closed_to_strangers(address: str) -> bool:
 
 def test_each_process_demands_a_certificate(cluster: Cluster) -> None:
     assert [closed_to_strangers(address) for address in addresses(cluster)] == [True, True, True]
+
+
+def test_no_process_has_pages_for_other_users_of_the_machine(cluster: Cluster) -> None:
+    described = cluster.client.scheduler_info(n_workers=-1)
+    ports = [cluster.client.run_on_scheduler(lambda dask_scheduler: dask_scheduler.http_server.port)]
+    ports += [worker["services"]["dashboard"] for worker in described["workers"].values()]
+    for port in ports:
+        for page in ("/", "/status", "/health", "/info/main/workers.html", "/metrics"):
+            assert httpx.get(f"http://127.0.0.1:{port}{page}", timeout=60).status_code == 404
+
+
+def test_what_its_processes_store_for_a_while_is_readable_by_its_owner_alone(cluster: Cluster) -> None:
+    (scratch,) = {
+        Path(worker["local_directory"]).parents[1]
+        for worker in cluster.client.scheduler_info(n_workers=-1)["workers"].values()
+    }
+    assert scratch.name == "scratch"
+    assert scratch.stat().st_mode & 0o077 == 0
 
 
 def test_a_scheduler_is_known_by_its_first_bytes(cluster: Cluster, processes: str, silent: str) -> None:
