@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from core.arrays import Floats
-from core.compiled import fma, kernel
-from core.double_double import dd_add, dd_add_d, dd_mul, two_prod
+from core.compiled import kernel
+from core.double_double import dd_add_d, dd_mul
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
 from core.multibody.members.lane_motion import following
 from core.multibody.members.lane_series import lane_changes, lane_coefficients
 from core.multibody.members.lane_space import LaneSpace, lane_entries, lane_inverse
 from core.multibody.members.lane_table import LaneForm
-from core.multibody.motion.series import moved_by
+from core.multibody.motion.series import changes_of, moved_by, moved_state
 
 
 @kernel()
@@ -24,21 +24,12 @@ def _expand(form: LaneForm, space: LaneSpace, tolerance: float) -> None:
 @kernel()
 def _move(form: LaneForm, space: LaneSpace) -> None:
     """Move the states of all lanes by their steps."""
-    series, h, of_power = space.series[0], lanes_at(space.h, 0), WIDTH * form.series
+    series, h, of_power, order = space.series[0], lanes_at(space.h, 0), WIDTH * form.series, space.series.shape[1] - 1
     q, q_tail, v, v_tail = space.q[0], space.q[1], space.v[0], space.v[1]
     for at in range(0, WIDTH * form.n, WIDTH):
-        moved, rate = alike(0.0), alike(0.0)
-        for k in range(space.series.shape[1] - 1, 2, -1):
-            own = lanes_at(series, k * of_power + at)
-            moved = (moved + own) * h
-            rate = fma(own, alike(float(k)), rate) * h
-        second = lanes_at(series, 2 * of_power + at)
-        moved = ((moved + second) * h) * h
-        # The largest terms, rate times step, are formed exactly; the rest is as much smaller as the step is short.
-        ph, pl = two_prod(lanes_at(v, at), h)
-        qh, ql = dd_add(lanes_at(q, at), lanes_at(q_tail, at), ph, pl + moved + lanes_at(v_tail, at) * h)
-        ph, pl = two_prod(alike(2.0) * second, h)
-        vh, vl = dd_add(lanes_at(v, at), lanes_at(v_tail, at), ph, pl + rate * h)
+        moved, rate = changes_of(series, at, of_power, order, h)
+        own = lanes_at(q, at), lanes_at(q_tail, at), lanes_at(v, at), lanes_at(v_tail, at)
+        qh, ql, vh, vl = moved_state(*own, lanes_at(series, 2 * of_power + at), moved, rate, h)
         put_lanes(q, at, qh)
         put_lanes(q_tail, at, ql)
         put_lanes(v, at, vh)

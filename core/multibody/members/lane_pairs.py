@@ -8,7 +8,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.compiled import fma, kernel
-from core.double_double import Pair, dd_add, dd_mul, dd_mul_d, fast_two_sum, two_prod, two_sum
+from core.double_double import Pair, dd_add, dd_mul, dd_mul_d, fast_two_sum
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.algebra.square_inverse import SUMMED_BELOW
@@ -17,7 +17,7 @@ from core.multibody.members.lane_motion import following
 from core.multibody.members.lane_series import lane_coefficients
 from core.multibody.members.lane_space import LaneSpace, lane_inverse
 from core.multibody.members.lane_table import LaneForm
-from core.multibody.motion.series_pairs import moved_pairs, paired_coefficients
+from core.multibody.motion.series_pairs import moved_lanes, moved_pairs, paired_coefficients
 
 
 @kernel()
@@ -140,25 +140,10 @@ def _coefficients(form: LaneForm, space: LaneSpace, until: int) -> None:
 
 @kernel()
 def _move(form: LaneForm, space: LaneSpace) -> None:
-    """Move the states of all lanes by their steps: `motion.series_pairs._moved`."""
-    high, low, by, of_power = space.series[0], space.series[1], lanes_at(space.h, 0), WIDTH * form.series
-    q, v, last, of_tails = space.q, space.v, of_power * (space.series.shape[1] - 1), WIDTH * form.n
-    for at in range(0, of_tails, WIDTH):
-        sh, sl = lanes_at(high, last + at), lanes_at(low, last + at)
-        rh, rl = alike(0.0), alike(0.0)
-        for k in range(last - of_power, -of_power, -of_power):
-            ph, pl = two_prod(rh, by)
-            rh, e = two_sum(ph, sh)
-            rl = fma(rl, by, pl + (e + sl))
-            ph, pl = two_prod(sh, by)
-            sh, e = two_sum(ph, lanes_at(high, k + at))
-            sl = fma(sl, by, pl + (e + lanes_at(low, k + at)))
-        sh, sl = fast_two_sum(sh, sl)
-        rh, rl = fast_two_sum(rh, rl)
-        put_lanes(q, at, sh)
-        put_lanes(q, of_tails + at, sl)
-        put_lanes(v, at, rh)
-        put_lanes(v, of_tails + at, rl)
+    """Move the states of all lanes by their steps."""
+    high, low, by, order = space.series[0], space.series[1], lanes_at(space.h, 0), space.series.shape[1] - 1
+    for at in range(0, WIDTH * form.n, WIDTH):
+        moved_lanes(high, low, at, WIDTH * form.series, order, by, space.q, space.v)
 
 
 @kernel()

@@ -132,12 +132,12 @@ def _content(value: object) -> Hashable:
     """Return what tells values apart: the contents of dataclasses and arrays; of anything else unknown, which it is."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
-    if isinstance(value, np.ndarray):
-        return value.shape, value.tobytes()
-    if isinstance(value, Mapping):
-        return tuple((key, _content(one)) for key, one in value.items())
     if isinstance(value, tuple):
         return type(value), *map(_content, value)
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    if isinstance(value, dict):
+        return tuple((key, _content(one)) for key, one in value.items())
     if is_dataclass(value):
         return type(value), *(_content(getattr(value, name)) for name in value.__dataclass_fields__)
     return id(value)

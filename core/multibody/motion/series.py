@@ -21,7 +21,7 @@ import numpy as np
 
 from core.arrays import Floats, Integers
 from core.compiled import fma, kernel
-from core.double_double import dd_add, dd_add_d, dd_mul, two_prod, two_sum
+from core.double_double import Pair, dd_add, dd_add_d, dd_mul, two_prod, two_sum
 from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.algebra.pair_arrays import gathered
 from core.multibody.equations.packed import ANGLES, FORCES, Packed
@@ -237,6 +237,46 @@ def correct(table: Packed, space: Saddle, lines: Floats, q: Floats, v: Floats) -
         v[i, 0], v[i, 1] = dd_add_d(v[i, 0], v[i, 1], total)
 
 
+@kernel(forceinline=True)
+def changes_of(path: Floats, at: int, of_power: int, order: int, by: float) -> Pair:
+    """Return by how much eight series change in a time, and their rates, but for the terms of v and the second power.
+
+    Parameters
+    ----------
+    path : ndarray
+        Coefficient k of the eight from `at` + k `of_power` on.
+    by : float
+        Eight times.
+    """
+    moved, rate = alike(0.0), alike(0.0)
+    for k in range(order, 2, -1):
+        own = lanes_at(path, k * of_power + at)
+        moved = (moved + own) * by
+        rate = fma(own, alike(float(k)), rate) * by
+    return ((moved + lanes_at(path, 2 * of_power + at)) * by) * by, rate * by
+
+
+@kernel(forceinline=True)
+def moved_state(
+    q: float, q_tail: float, v: float, v_tail: float, second: float, moved: float, rate: float, h: float
+) -> tuple[float, float, float, float]:
+    """Return a place and a rate a time h later, as compensated sums; of a number or of eight.
+
+    Parameters
+    ----------
+    second : float
+        The second coefficient of the place.
+    moved, rate : float
+        By `changes_of`.
+    """
+    # The largest terms, rate times step, are formed exactly; the rest is as much smaller as the step is short.
+    ph, pl = two_prod(v, h)
+    qh, ql = dd_add(q, q_tail, ph, pl + moved + v_tail * h)
+    ph, pl = two_prod(second + second, h)
+    vh, vl = dd_add(v, v_tail, ph, pl + rate)
+    return qh, ql, vh, vl
+
+
 @kernel()
 def advance(
     table: Packed,
@@ -302,20 +342,13 @@ def advance(
             if not abs(h) >= 0.0:
                 return STUCK, step
         for b in range(0, n, WIDTH):
-            moved, rate, by = alike(0.0), alike(0.0), alike(h)
-            for k in range(order, 2, -1):
-                own = lanes_at(path, k * size + b)
-                moved = (moved + own) * by
-                rate = fma(own, alike(float(k)), rate) * by
-            moved = (moved + lanes_at(path, 2 * size + b)) * by
-            put_lanes(changes, b, moved * by)
-            put_lanes(changes, size + b, rate * by)
+            moved, rate = changes_of(path, b, size, order, alike(h))
+            put_lanes(changes, b, moved)
+            put_lanes(changes, size + b, rate)
         for i in range(n):
-            # The largest terms, rate times step, are formed exactly; the rest is as much smaller as the step is short.
-            ph, pl = two_prod(v[i, 0], h)
-            q[i, 0], q[i, 1] = dd_add(q[i, 0], q[i, 1], ph, pl + changes[0, i] + v[i, 1] * h)
-            ph, pl = two_prod(2.0 * c[i, 2], h)
-            v[i, 0], v[i, 1] = dd_add(v[i, 0], v[i, 1], ph, pl + changes[1, i])
+            q[i, 0], q[i, 1], v[i, 0], v[i, 1] = moved_state(
+                q[i, 0], q[i, 1], v[i, 0], v[i, 1], c[i, 2], changes[0, i], changes[1, i], h
+            )
             place[i] = q[i, 0]
             if not (abs(q[i, 0]) < FARTHEST and abs(v[i, 0]) < FARTHEST):
                 formed = math.isfinite(q[i, 0]) and math.isfinite(v[i, 0])

@@ -203,31 +203,35 @@ def correct_pairs(table: Packed, space: Saddle, lines: Floats, q: Floats, v: Flo
         v[i, 0], v[i, 1] = dd_add_d(v[i, 0], v[i, 1], total)
 
 
-@kernel()
-def _moved(path: Floats, size: int, h: float, out: Floats) -> None:
-    """Evaluate a path a time h later, into places and rates `out` of shape (2, 2, s).
+@kernel(forceinline=True)
+def moved_lanes(high: Floats, low: Floats, at: int, of_power: int, order: int, by: float, q: Floats, v: Floats) -> None:
+    """Evaluate eight series a time later, into places and rates of shape (2, s), from `at` on.
 
     By Horner's rule for the sum and its derivative at once, the tails summed in doubles.
+
+    Parameters
+    ----------
+    high, low : ndarray
+        Coefficient k of the eight from `at` + k `of_power` on.
+    by : float
+        Eight times.
     """
-    high, low = path[0], path[1]
-    end = high.shape[0]
-    for b in range(0, size, WIDTH):
-        by = alike(h)
-        sh, sl = lanes_at(high, end - size + b), lanes_at(low, end - size + b)
-        rh, rl = alike(0.0), alike(0.0)
-        for k in range(end - 2 * size, -size, -size):
-            ph, pl = two_prod(rh, by)
-            rh, e = two_sum(ph, sh)
-            rl = fma(rl, by, pl + (e + sl))
-            ph, pl = two_prod(sh, by)
-            sh, e = two_sum(ph, lanes_at(high, k + b))
-            sl = fma(sl, by, pl + (e + lanes_at(low, k + b)))
-        sh, sl = fast_two_sum(sh, sl)
-        rh, rl = fast_two_sum(rh, rl)
-        put_lanes(out[0], b, sh)
-        put_lanes(out[0], size + b, sl)
-        put_lanes(out[1], b, rh)
-        put_lanes(out[1], size + b, rl)
+    last, tail = order * of_power + at, q.size // 2 + at
+    sh, sl = lanes_at(high, last), lanes_at(low, last)
+    rh, rl = alike(0.0), alike(0.0)
+    for k in range(last - of_power, at - of_power, -of_power):
+        ph, pl = two_prod(rh, by)
+        rh, e = two_sum(ph, sh)
+        rl = fma(rl, by, pl + (e + sl))
+        ph, pl = two_prod(sh, by)
+        sh, e = two_sum(ph, lanes_at(high, k))
+        sl = fma(sl, by, pl + (e + lanes_at(low, k)))
+    sh, sl = fast_two_sum(sh, sl)
+    rh, rl = fast_two_sum(rh, rl)
+    put_lanes(q, at, sh)
+    put_lanes(q, tail, sl)
+    put_lanes(v, at, rh)
+    put_lanes(v, tail, rl)
 
 
 @kernel()
@@ -329,7 +333,8 @@ def advance_pairs(
             h = until_corner(table.laws, products.laws, h)
             if not abs(h) >= 0.0:
                 return STUCK, step
-        _moved(path, size, h, moved)
+        for b in range(0, size, WIDTH):
+            moved_lanes(path[0], path[1], b, size, order, alike(h), moved[0], moved[1])
         for i in range(n):
             q[i, 0], q[i, 1] = moved[0, 0, i], moved[0, 1, i]
             v[i, 0], v[i, 1] = moved[1, 0, i], moved[1, 1, i]
