@@ -46,6 +46,13 @@ _GROUPED = re.compile(r"(?<!\d)\d{1,3} \d{3}(?!\d)")
 _QUANTITY = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([*/])\s*([A-Za-zµ°Ω%][\w°µΩ%²³⁻¹*/^ .-]*)")
 _SECOND_NUMBER = re.compile(r"[^\W\d_]\.?\s+\d(?!\s*/)")
 """Behind a unit: ``6 s 280 ms`` is no product."""
+_DIRECTION = re.compile(
+    r".*\d.*[\s,](?:(?:nach|zu[rm]?) (?:rechts|links|oben|unten)|(?:to|towards) the (?:right|left)"
+    r"|(?:up|down)(?:wards?)?|(?:vers|à) (?:la (?:droite|gauche)|le (?:haut|bas)|droite|gauche)"
+    r"|hacia (?:la (?:derecha|izquierda)|arriba|abajo))",
+    re.IGNORECASE | re.DOTALL,
+)
+"""Behind a number: a direction in words, which says nothing of axes."""
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("null", "none", "keine", "keiner", "aucun", "aucune", "ninguno", "ninguna")),
     **dict.fromkeys(
@@ -93,6 +100,8 @@ def typed_entry(text: str, locale: Locale | None = None) -> TypedEntry:
     word = entry.lower().rstrip(".")
     if word in _WORDS:
         return TypedEntry(_WORDS[word])
+    if _DIRECTION.fullmatch(entry):
+        raise EntryFault((), "say a direction by its sign, not in words", sentence=Sentence("direction-in-words"))
     if _is_list(entry, locale):
         return TypedEntry(*_listed(entry, locale))
     number = leading_number(entry, locale)

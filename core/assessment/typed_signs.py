@@ -22,10 +22,12 @@ _HEDGES = (
     "ca|circa|zirka|approx|approximately|about|around|roughly|etwa|rund|ungefähr|env|environ|aprox|aproximadamente|unos"
 )
 _NAMED = re.compile(
-    rf"(?:(?:\|?[^\W\d]\w*\|?)?\s*[=≈≃≅~∼]\s*|[^\W\d]\w*\s*:\s*)?(?:(?:{_HEDGES})\b\.?\s*(?=[-+\d.,√]|pi\b))?",
-    re.IGNORECASE,
+    rf"(?:.*(?<![<>!=])[=≈≃≅~∼]\s*|[^\W\d]\w*\s*:\s*)?(?:(?:{_HEDGES})\b\.?\s*(?=[-+\d.,√]|pi\b))?",
+    re.IGNORECASE | re.DOTALL,
 )
-"""What stands before the answer itself: ``T = 6.28 s``, ``|ω| ≈ 6.28 s``, ``T: ca. 6.28 s``."""
+"""What stands before the answer itself: ``T = 6.28 s``, ``|ω| ≈ 6.28 s``, ``T: ca. 6.28 s``, ``S = m g/2 = 20.6 N``."""
+_STOP = re.compile(r"(?<=[\w%°Ω²³⁻¹)])\.$")
+"""The end of a sentence."""
 
 _FUNCTIONS = {
     **{name: name for name in NAMES_OF_FUNCTIONS},
@@ -55,6 +57,7 @@ def with_plain_signs(text: str, locale: Locale | None) -> str:
     entry = entry.translate(_SIGNS).strip()
     if named := _NAMED.match(entry):
         entry = entry[named.end() :]
+    entry = _STOP.sub("", entry)
     if locale == "es" and "°" not in entry:
         entry = _APOSTROPHE.sub(",", entry)
     if lowered := _LOWERED_EXPONENT.search(entry):

@@ -24,6 +24,7 @@ ENGLISH: Mapping[str, str] = {
     "unit-with-offset": "Use a unit that starts at zero.",
     "unit-size": "This unit is too large or too small.",
     # Entries that cannot be read
+    "direction-in-words": "Give the direction by the sign of the number, not in words.",
     "entry-empty": "The answer is empty.",
     "entry-malformed": "Write one number with its unit, such as 6.28 s.",
     "number-ambiguous": "{digits} can mean {whole} or {decimal}. Write {whole} or {padded}.",

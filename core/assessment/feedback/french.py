@@ -25,6 +25,7 @@ FRENCH: Mapping[str, str] = {
     "unit-with-offset": "Utilisez une unité dont l'échelle part de zéro.",
     "unit-size": "Cette unité est trop grande ou trop petite.",
     # Entries that cannot be read
+    "direction-in-words": "Indiquez le sens par le signe du nombre, pas par des mots.",
     "entry-empty": "La réponse est vide.",
     "entry-malformed": "Écrivez un nombre avec son unité, par exemple 6,28 s.",
     "number-ambiguous": "{digits} peut signifier {whole} ou {decimal}. Écrivez {whole} ou {padded}.",

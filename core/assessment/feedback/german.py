@@ -27,6 +27,7 @@ GERMAN: Mapping[str, str] = {
     "unit-with-offset": "Verwenden Sie eine Einheit, deren Skala bei null beginnt.",
     "unit-size": "Diese Einheit ist zu groß oder zu klein.",
     # Entries that cannot be read
+    "direction-in-words": "Geben Sie die Richtung durch das Vorzeichen der Zahl an, nicht in Worten.",
     "entry-empty": "Die Eingabe ist leer.",
     "entry-malformed": "Schreiben Sie eine Zahl mit ihrer Einheit, zum Beispiel 6,28 s.",
     "number-ambiguous": "{digits} kann {whole} oder {decimal} bedeuten. Schreiben Sie {whole} oder {padded}.",

@@ -25,6 +25,7 @@ SPANISH: Mapping[str, str] = {
     "unit-with-offset": "Use una unidad cuya escala empiece en cero.",
     "unit-size": "Esta unidad es demasiado grande o demasiado pequeña.",
     # Entries that cannot be read
+    "direction-in-words": "Indique el sentido con el signo del número, no con palabras.",
     "entry-empty": "La respuesta está vacía.",
     "entry-malformed": "Escriba un número con su unidad, por ejemplo 6,28 s.",
     "number-ambiguous": "{digits} puede significar {whole} o {decimal}. Escriba {whole} o {padded}.",

@@ -47,6 +47,10 @@ from core.errors import InvalidParameter
         ("(1,5 | 2)", [1.5, 2.0], None),
         ("T = 6,28 s", 6.28, "s"),
         ("\u2248 6,28 s", 6.28, "s"),
+        ("S = m*g/2 = 20,58 N", 20.58, "N"),
+        ("|F| = 3 N", 3.0, "N"),
+        ("-2,95 m/s\u00b2.", -2.95, "m/s\u00b2"),
+        ("120 r.p.m.", 120.0, "rpm"),
         ("ca. 12,3 N", 12.3, "N"),
         ("F \u2248 ca. 12,3 N", 12.3, "N"),
         ("Circa -3 m", -3.0, "m"),
@@ -318,3 +322,12 @@ def test_texts_that_cannot_be_read(text: Any) -> None:
     with pytest.raises(InvalidParameter) as fault:
         Claim.read({"text": text})
     assert fault.value.path == ("text",)
+
+
+@pytest.mark.parametrize(
+    "text", ["2 N nach unten", "3 m/s to the right", "4 N vers la droite", "5 m hacia arriba", "1 N up"]
+)
+def test_a_direction_in_words_is_asked_for_as_a_sign(text: str) -> None:
+    with pytest.raises(EntryFault) as raised:
+        typed_entry(text)
+    assert raised.value.sentence.key == "direction-in-words"
