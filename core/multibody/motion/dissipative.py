@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
 from core.arrays import Floats
-from core.multibody.equations.packed import state, two_to
+from core.multibody.equations.packed import two_to
 from core.multibody.motion.collocated import collocated, pieces_of_steps
 from core.multibody.motion.numerical import ALIKE_MARGIN, Numerical, integrate
 from core.multibody.motion.run import Run
@@ -49,7 +48,7 @@ class Dissipative(Numerical):
 
     def run(self, kind: str, end: float) -> Run:
         """Return steps to a time in the units of the arrays: "doubles", "reference", "fine" or "check"."""
-        if end > 0.0 and self._turns_out_stiff(self._rates_at_start, end):
+        if end > 0.0 and self._turns_out_stiff(self.rates_at_start, end):
             self._runs.clear()
         found = super().run(kind, end)
         if not found.given_up:
@@ -68,10 +67,6 @@ class Dissipative(Numerical):
         # Steps have become too short, as they do at a singular place, which series come closer to.
         self.stiff, self.name, self.why = False, Numerical.name, self._coupled
         return replace(found, singular=False, given_up=True)
-
-    @cached_property
-    def _rates_at_start(self) -> Floats | None:
-        return rates_of_decay(self.arrays, *state(self.table, self.units))
 
     def _turns_out_stiff_on_the_way(self, q: Floats, v: Floats, end: float, steps: float) -> bool:
         """Return whether it does where what is at the start does not say how many steps all of the time takes."""
@@ -98,7 +93,7 @@ class Dissipative(Numerical):
         """Return the polynomials of its own steps about times, where the motion is stiff."""
         end = float(np.max(times + reach)) * two_to(-self.units.time)
         # A search may reach far beyond the first event: a motion that is not stiff is not followed for it.
-        if reach[0] <= 0.0 or not (self.stiff or limiting_decay(self._rates_at_start, end)):
+        if reach[0] <= 0.0 or not (self.stiff or limiting_decay(self.rates_at_start, end)):
             return None
         run = self.run(kind, end)
         return pieces_of_steps(run, self.arrays.group, self.units, times, reach, order) if self.stiff else None

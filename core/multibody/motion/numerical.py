@@ -10,15 +10,16 @@ from functools import cached_property
 import numpy as np
 
 from core.arrays import Floats, Integers
-from core.errors import AccuracyUnreachable
+from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
-from core.multibody.equations.packed import Packed, Units, packed, two_to, units_of
+from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
 from core.multibody.motion.lost_rank import KEPT, first_lost, lines_that_may_depend
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.other_rows import rows_for
-from core.multibody.motion.run import Run, begun, evaluate, run_by
+from core.multibody.motion.run import MOST_STEPS, Run, begun, evaluate, run_by
 from core.multibody.motion.series import STUCK, advance, placed
 from core.multibody.motion.series_pairs import advance_pairs
+from core.multibody.motion.stiff import MANY, limiting_oscillation, rates_of_decay
 from core.multibody.table.table import Table
 
 _SAME_PLACE = 1e-3
@@ -79,6 +80,7 @@ class Numerical(Motion):
     period: Ball | None = None
     lost_to_doubles: bool = False
     rows: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
+    _turns: str = field(default="", repr=False)
     _runs: dict[tuple[str, int], Run] = field(default_factory=dict, repr=False)
     _met: list[Floats] = field(default_factory=list, repr=False)
 
@@ -109,8 +111,31 @@ class Numerical(Motion):
         found = self._runs.get(key)
         if found is not None and (abs(found.end) >= abs(end) or found.singular):
             return found
-        self._runs[key] = self.steps(kind, end, found)
+        try:
+            self._runs[key] = self.steps(kind, end, found)
+        except BudgetExceeded as fault:
+            oscillation = self._oscillation(end, MOST_STEPS)
+            if oscillation:
+                fault.remedy = f"{fault.remedy}, or put a rod in the place of the stiffest spring: {oscillation}"
+            raise
+        steps = len(self._runs[key].series)
+        if steps > MANY and not self._turns:
+            self._turns = self._oscillation(end, steps)
+            self.why = "; ".join(filter(None, (self.why, self._turns)))
         return self._runs[key]
+
+    @cached_property
+    def rates_at_start(self) -> Floats | None:
+        """Eigenvalues of the motion beside the start; see `rates_of_decay`."""
+        return rates_of_decay(self.arrays, *state(self.table, self.units))
+
+    def _oscillation(self, end: float, steps: int) -> str:
+        """Return what oscillates so fast that it takes most of the steps to a time; empty where nothing does."""
+        springs = self.table.stiffness or self.table.acting
+        frequency = limiting_oscillation(self.rates_at_start, end, steps) if springs else None
+        if frequency is None:
+            return ""
+        return f"what oscillates at {frequency * two_to(-self.units.time):.3g} rad/s is followed turn by turn"
 
     def steps(self, kind: str, end: float, since: Run | None = None) -> Run:
         """Take steps to a time in the units of the arrays, from the start, or on from a run that does not reach it."""

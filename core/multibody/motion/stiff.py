@@ -1,4 +1,4 @@
-"""When a motion is stiff: what decays fast limits the steps of its Taylor series."""
+"""What limits the steps of a Taylor series: what decays fast, where a motion is stiff, and what oscillates fast."""
 
 from __future__ import annotations
 
@@ -18,6 +18,12 @@ LIMITING = 1.0
 """Power of e by which what limits the steps of a series decays in a step at least: those of order 24 to 32 take two."""
 DECAYED = 48.0
 """Power of e by which decays what need not be followed any longer: 2^-70."""
+MANY = 512
+"""Steps from which on it is said what takes them: a twentieth of a second in pairs of doubles for a few coordinates."""
+FASTER = 32.0
+"""How much faster than another motion what oscillates is at least, to be told from it."""
+NOTHING = 2.0**-20
+"""Share of the fastest rate below which one is the rounding of zero, whose square root it may be."""
 LARGEST = 400
 """Coordinates and rows up to which it is asked: the eigenvalues of more take seconds."""
 
@@ -67,3 +73,15 @@ def limiting_decay(rates: Floats | None, time: float, steps: float | None = None
     if DEAREST * float(np.max(rates[:, 1] * lasting, initial=0.0)) / PER_STEP > steps:
         return None
     return float(np.max(decays))
+
+
+def limiting_oscillation(rates: Floats | None, time: float, steps: float) -> float | None:
+    """Return the angular frequency of what takes most of the steps of a series; None where all motion does."""
+    if rates is None or not len(rates):
+        return None
+    real, size = rates[np.argmax(rates[:, 1])]
+    slower = rates[rates[:, 1] > NOTHING * size, 1]
+    frequency = float(np.sqrt(max(size * size - real * real, 0.0)))
+    if frequency * abs(time) < LIMITING * steps or size < FASTER * np.min(slower, initial=size):
+        return None
+    return frequency

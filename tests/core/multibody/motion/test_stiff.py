@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from core.balls import precision
+from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.motion.dissipative import Dissipative
 from core.multibody.motion.stiff import limiting_decay
@@ -81,3 +85,57 @@ def test_a_stiff_motion_whose_steps_become_too_short_is_followed_by_its_series()
     assert late.ended is not None
     assert (late.ended.kind, late.ended.name) == ("formula", "pull")
     assert 0.125 < late.ended.time < 0.126
+
+
+def elastic_pendulum(stiffness: float) -> dict[str, Any]:
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": 1, "at": [0.6, -0.8]}},
+        "connections": [
+            {"kind": "spring", "a": "bob", "b": [0, 0], "stiffness": stiffness, "rest_length": 1},
+            {"kind": "spring", "a": "bob", "b": [1, 0], "stiffness": 5, "rest_length": 0.5},
+        ],
+    }
+
+
+def test_what_oscillates_is_not_stiff_and_the_model_says_that_it_is_followed() -> None:
+    """The frequency of a bob on its spring is the root of k/m; stretched by some m g/k, it hardly leaves a circle."""
+    soft, hard = (solve_scene(read(elastic_pendulum(k)), [0.0, 1.0], ("trajectory",)) for k in (1e4, 1e8))
+    assert (soft.model.name, hard.model.name) == ("Taylor series", "Taylor series")
+    assert "oscillates" not in soft.model.why
+    assert "what oscillates at 1e+04 rad/s is followed turn by turn" in hard.model.why
+    assert abs(np.linalg.norm(column(hard, "bob.position").values[-1]) - 1.0) < 1e-6
+
+
+def test_what_oscillates_too_often_is_named_where_it_is_refused() -> None:
+    with pytest.raises(BudgetExceeded) as refused:
+        solve_scene(read(elastic_pendulum(1e12)), [0.0, 1.0], ("trajectory",))
+    assert refused.value.remedy is not None
+    assert "what oscillates at 1e+06 rad/s" in refused.value.remedy
+
+
+@pytest.mark.parametrize("coefficient", [10.0**power for power in range(-3, 7)])
+def test_a_pendulum_is_stiff_under_a_strong_damper_alone(coefficient: float) -> None:
+    """Beside an implicit method of fifth order for its angle; the damper pulls at the bob from a place beside it."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": 1, "at": [0.6, -0.8]}},
+        "connections": [
+            {"kind": "rod", "a": "bob", "b": [0, 0]},
+            {"kind": "damper", "a": "bob", "b": [1, -1], "coefficient": coefficient},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 1.0], ("trajectory",))
+    assert answer.model.name == ("collocation" if coefficient > 1e3 else "Taylor series")
+
+    def rates(_: float, state: Any) -> list[float]:
+        (s, c), along = (np.sin(state[0]), np.cos(state[0])), np.array([np.cos(state[0]), np.sin(state[0])])
+        way = np.array([1 - s, -1 + c])
+        way /= np.linalg.norm(way)
+        return [state[1], -9.81 * s - coefficient * (along @ way) ** 2 * state[1]]
+
+    start = [np.arctan2(0.6, 0.8), 0.0]
+    angle = solve_ivp(rates, (0.0, 1.0), start, method="Radau", rtol=1e-11, atol=1e-13).y[0, -1]
+    place = column(answer, "bob.position")
+    assert place.error < 1e-14
+    np.testing.assert_allclose(place.values[-1], [np.sin(angle), -np.cos(angle)], atol=1e-10)
