@@ -124,9 +124,13 @@ def largest_of(numbers: Sequence[Ball]) -> int:
 
 @recordable
 def is_share_of(numbers: Sequence[Ball], share: float, others: Sequence[Ball]) -> bool:
-    """Return whether the largest of numbers is at most a share of the largest of others, to the digits of doubles."""
+    """Return whether the largest of numbers is at most a share of the largest of others, to the digits of doubles.
+
+    Others that are wide leave that width of what cancels: what is taken for zero on the way has it no more.
+    """
     sizes, whole = ([abs(float(x.mid())) for x in one] for one in (numbers, others))
-    return max(sizes, default=0.0) <= share * max(whole, default=0.0)
+    wide = max((float(x.rad()) for x in others), default=0.0) / CLEAR
+    return max(sizes, default=0.0) <= max(share * max(whole, default=0.0), wide)
 
 
 def _subtract(line: Line, key: int, value: Ball) -> None:

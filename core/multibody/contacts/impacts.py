@@ -182,7 +182,8 @@ def impact(
         For more than eight touching contacts that push one another by friction, unless they act in order; and for more
         than four that come to too many different rates in different orders.
     """
-    table = phase_table(base, (), (), q, v).table
+    # Forces do nothing in no time: formulas of them need not have a piece yet.
+    table = replace(phase_table(base, (), (), q, v).table, laws=[])
     unilateral = along_slip(measures, touching, q, v)
     found = responses(table, unilateral, touching)
     normal, slips, across = found.normal, found.slips, found.across

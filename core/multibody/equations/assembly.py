@@ -89,8 +89,10 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
         table.q = _followed(table, [q - d for q, d in zip(table.q, step, strict=True)])
         scale = max(float(abs(q)) for q in table.q)
         if max(float(abs(d)) for d in step) <= 2.0**-150 * scale:
-            # Quadratic convergence: what is left is far below the last step.
-            q = [arb(q.mid(), max(float(abs(d)), 2.0**-280 * scale)) for q, d in zip(table.q, step, strict=True)]
+            # Quadratic convergence: what is left is far below the last step, whose width is that of the measures: what
+            # has begun has the places of its beginning in them.
+            least = 2.0**-280 * scale
+            q = [arb(q.mid(), max(float(d.abs_upper()), least)) for q, d in zip(table.q, step, strict=True)]
             table.q = _followed(table, q)
             break
     for row in rows:

@@ -60,7 +60,7 @@ def changed(base: Described, acting: Acting, due: Sequence[Entry], tracks: Track
     begin, end, blows = (
         frozenset(entry.name for entry in due if entry.kind == kind) for kind in ("begin", "end", "impulse")
     )
-    before = [_placed(base, track) for track in tracks.each] if begin else tracks.each
+    before = [_placed(base, track) for track in tracks.each]
     fresh = [_acting(acting, begin, end, track) for track in before]
     bases = [
         described(base.scene, base.measures.numerals, one_sided=True, acting=one) if begin or end else base
@@ -92,7 +92,8 @@ def _placed(base: Described, track: Track) -> Track:
     """Return a track with places that meet what has held until now.
 
     What begins takes its directions from these: axes of a body that are at right angles but for the rounding of a
-    motion would be held at an angle that the body does not allow.
+    motion would be held at an angle that the body does not allow. Redundant connections, which are redundant on these
+    places alone, would share out an impulse by that rounding.
     """
     table = replace(base.measures.table, q=list(track.q))
     table.follow_time()

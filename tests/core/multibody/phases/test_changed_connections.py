@@ -693,7 +693,6 @@ def test_bodies_that_have_docked_go_on_when_something_else_begins() -> None:
     # Rows of a weld in space depend on one another on its places alone; the centre of both falls freely.
     found = solved(
         [0.5],
-        ("trajectory",),
         gravity=[0, 0, -10],
         bodies={
             "a": {"mass": 3, "moments": [1, 2, 2], "at": [0, 0, 0], "angular_velocity": [0, 0, 3]},
@@ -707,3 +706,63 @@ def test_bodies_that_have_docked_go_on_when_something_else_begins() -> None:
     assert happened(found) == [("begin", "weld"), ("begin", "spring")]
     middle = (3 * column(found, "a.position") + column(found, "b.position")) / 4
     np.testing.assert_allclose(middle[0], [1.25, 0, -0.125 - 1.25], rtol=1e-14, atol=1e-14)
+
+
+def test_a_blow_to_what_two_equal_rods_hold_is_that_to_what_one_holds() -> None:
+    # The support moves by formulas of time, so that its places are rounded apart.
+    rod = {"kind": "rod", "a": "bob", "b": ["t^2/4", "sin(t)/3"]}
+    rest = [
+        {"kind": "force", "name": "drag", "place": "bob", "force": ["-vx/3", "-vy/3"]},
+        {"kind": "impulse", "name": "blow", "place": "bob", "impulse": [2, -1], "at": 0.366},
+        {"kind": "spring", "name": "spring", "a": "bob", "b": [3, 3], "stiffness": 5, "from": 0.5},
+    ]
+    one, two = (
+        solved([0.8], ("trajectory",), bodies={"bob": {"mass": 1, "at": [0.6, 0.8]}}, connections=[*rods, *rest])
+        for rods in ([{**rod, "name": "rod"}], [{**rod, "name": "rod"}, {**rod, "name": "again"}])
+    )
+    assert happened(one) == happened(two) == [("impulse", "blow"), ("begin", "spring")]
+    for name in ("bob.position", "bob.velocity"):
+        np.testing.assert_allclose(column(two, name), column(one, name), rtol=1e-13)
+
+
+def test_a_rod_begins_on_a_truss_with_a_bar_more_than_it_needs() -> None:
+    half = "sqrt(1/2)"
+    places = {"a": [f"-{half}", f"-{half}"], "b": [0, f"-2*{half}"], "c": [half, f"-{half}"]}
+    ties = [("a", [0, 0]), ("c", [0, 0]), ("b", "a"), ("b", "c"), ("a", "c"), ("b", [0, 0])]
+    bars = [{"kind": "rod", "name": f"bar-{k}", "a": a, "b": b} for k, (a, b) in enumerate(ties)]
+    rod = {"mass": 2, "inertia": "1/6", "places": {"top": [-0.5, 0], "end": [0.5, 0]}}
+    found = solved(
+        [0.8],
+        gravity=[0, -10],
+        bodies={
+            **{name: {"mass": 1, "at": at} for name, at in places.items()},
+            "one": {**rod, "at": [f"5 + {half}/2", f"{half}/2"], "angle": "pi/4"},
+            "two": {**rod, "at": [f"5 + {half}", f"{half} - 1/2"], "angle": "-pi/2"},
+        },
+        connections=[
+            *bars,
+            {"kind": "pin", "name": "hinge", "a": "one.top", "b": [5, 0]},
+            {"kind": "pin", "name": "knee", "a": "two.top", "b": "one.end"},
+            {"kind": "damper", "name": "rub", "a": "two", "b": "one", "measure": "turn", "coefficient": 0.1},
+            {"kind": "rod", "name": "rod", "a": "one", "b": "c", "from": 0.123},
+        ],
+    )
+    assert happened(found) == [("begin", "rod")]
+    # The truss stays rigid.
+    a, b, c = (column(found, f"{name}.position")[0] for name in "abc")
+    np.testing.assert_allclose([np.linalg.norm(c - a), np.linalg.norm(b)], np.sqrt([2, 2]), rtol=1e-13)
+
+
+def test_what_strikes_where_something_begins_needs_no_piece_of_a_formula() -> None:
+    found = solved(
+        [0.8],
+        gravity=[0, -10],
+        bodies={"bob": {"mass": 1, "at": [0.8, -0.6]}, "block": {"mass": 2, "at": [3, 0], "velocity": [0.5, 0]}},
+        connections=[
+            {"kind": "force", "name": "push", "place": "bob", "force": ["if(t - 1/4, 3, 0)", 0]},
+            {"kind": "rod", "name": "hangs", "a": "bob", "b": [0, 0]},
+            {"kind": "contact", "name": "floor", "place": "block", "on": {"at": [0, 0]}},
+            {"kind": "rod", "name": "tie", "a": "bob", "b": "block", "from": 0.41},
+        ],
+    )
+    assert happened(found) == [("switch", "push"), ("begin", "tie"), ("touch", "floor")]
