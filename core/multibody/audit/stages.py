@@ -115,7 +115,8 @@ def _ended_after_impulses(answer: SceneSolution, time: float) -> set[str]:
     found, struck = set[str](), False
     for event in answer.events:
         if event.time == time:
-            struck = struck or bool(event.impulses)
+            # What begins may take impulses that are not determined, and so not listed.
+            struck = struck or bool(event.impulses) or event.kind in ("begin", "impulse")
             if event.kind == "end" and struck:
                 found.add(event.name)
     return found

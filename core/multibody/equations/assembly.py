@@ -37,6 +37,8 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
     InvalidParameter
         If the positions contradict a connection by more than rounding, with the connection and by how much.
     """
+    # The motion that has led here may have rounded what follows from others apart from these.
+    table.q = _followed(table, list(table.q))
     rows = [row for row in table.rows if row.measure is not None]
     residuals = [evaluated(row.measure or {}, table.q) for row in rows]
     if all(is_zero(x) for x in residuals):

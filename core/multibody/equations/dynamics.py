@@ -9,7 +9,7 @@ from math import inf
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.multibody.algebra.large_systems import LARGE, solved_from_doubles
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, entry, evaluated, is_zero
-from core.multibody.algebra.rank import Elimination, independent
+from core.multibody.algebra.rank import Elimination, independent, is_share_of
 from core.multibody.algebra.square_systems import solved
 from core.multibody.laws.series import values_at
 from core.multibody.table.connection_effects import Force
@@ -245,8 +245,14 @@ class Multipliers:
         return {name: others for name, others in found.items() if others and name not in self.bodies}
 
 
-def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Multipliers:
+def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball], rounding: float = 0.0) -> Multipliers:
     """Return the multipliers that give the accelerations.
+
+    Parameters
+    ----------
+    rounding : float
+        Share of its terms up to which what is left of an equation may be that of a rounded state, and determines
+        nothing.
 
     Raises
     ------
@@ -262,9 +268,13 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
         for j, value in row.pushed(table.q).items():
             lines[j][r] = value
     elimination = Elimination()
+    known = rounding * max((float(abs(x)) for x in (*pushed, *given)), default=0.0) if rounding else 0.0
     for line, inertia, force in zip(lines, pushed, given, strict=True):
-        left = elimination.add(line, inertia - force)
-        if left is not None and not is_zero(left):
+        rest, left = elimination.reduced(line, inertia - force)
+        if rest:
+            if not (rounding and is_share_of([*rest.values()], rounding, [*line.values()]) and abs(left) <= known):
+                elimination.determine(rest, left)
+        elif not is_zero(left):
             if len(table.independent_rows()) < len(table.rows):
                 raise InvalidParameter(
                     ("connections",),

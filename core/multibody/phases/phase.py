@@ -91,12 +91,17 @@ class Phase:
         """Whether the forces of a motion with constant accelerations are constant."""
         return keeps_its_forces(self.tables[0].table, self.exact_motions[0])
 
+    @property
+    def _rounding(self) -> float:
+        """Share to which its start is known: a state of two tracks has rounded places."""
+        return 0.0 if len(self.tracks) == 1 else ROUNDING
+
     @cached_property
     def exact_motions(self) -> list[Expansion]:
         """The motion on every track from the start of the phase, where accelerations are constant."""
         found = [self.start_forces[0]]
         for model in self.models[1:]:
-            found.append(multipliers_at_start(model.described.measures, model.whole.acceleration))
+            found.append(multipliers_at_start(model.described.measures, model.whole.acceleration, self._rounding))
         tracks = zip(self.tables, self.models, found, strict=True)
         return [uniform_motion(table.table, model.whole.acceleration, forces) for table, model, forces in tracks]
 
@@ -104,7 +109,7 @@ class Phase:
     def start_forces(self) -> tuple[Multipliers, list[ForceAtStart]]:
         """Multipliers at its start, and the forces of connections."""
         measures = self.models[0].described.measures
-        multipliers = multipliers_at_start(measures, self.models[0].whole.acceleration)
+        multipliers = multipliers_at_start(measures, self.models[0].whole.acceleration, self._rounding)
         return multipliers, forces_at_start(measures, multipliers)
 
     @cached_property

@@ -766,3 +766,64 @@ def test_what_strikes_where_something_begins_needs_no_piece_of_a_formula() -> No
         ],
     )
     assert happened(found) == [("switch", "push"), ("begin", "tie"), ("touch", "floor")]
+
+
+def test_feet_that_share_a_load_in_no_one_way_do_so_wherever_something_begins() -> None:
+    # A table of four feet slides in a spinning frame, by a motion that is rounded when the damper begins.
+    feet = {"f0": [0.5, 0.3, -0.5], "f1": [-0.5, 0.3, -0.5], "f2": [-0.5, -0.3, -0.5], "f3": [0.5, -0.3, -0.5]}
+    table = {"mass": 10, "moments": [1, 1.5, 2], "at": [5, 0, 0.5], "places": feet, "velocity": [0, 0.5, 0]}
+    floor = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    found = solved(
+        [0.31],
+        ("trajectory", "forces-in-time"),
+        gravity=[0, 0, -10],
+        bodies={"table": table | {"angular_velocity": [0, 0, 0]}, "ball": {"mass": 3, "at": [0, 0, 1]}},
+        connections=[
+            *(
+                {"kind": "contact", "name": f"on-{foot}", "place": f"table.{foot}", "on": floor, "friction": 0.1}
+                for foot in feet
+            ),
+            {"kind": "spinning-frame", "rate": 1},
+            {"kind": "damper", "name": "damper", "a": "table.f1", "b": "ball", "coefficient": 2, "from": 0.294},
+        ],
+    )
+    assert found.trajectory is not None
+    assert not [name for name in found.trajectory.columns if name.startswith("on-") and name.endswith("normal")]
+
+
+def test_a_rod_ends_on_a_bead_on_a_curve_that_is_a_formula() -> None:
+    found = solved(
+        [0.29, 0.5],
+        ("trajectory",),
+        gravity=[0, -10],
+        bodies={"bead": {"mass": 2, "at": [0, "1/2"]}},
+        connections=[
+            {"kind": "relation", "name": "curve", "of": "bead.y - exp(-bead.x)/2", "equals": 0},
+            {"kind": "rod", "name": "rod", "a": "bead", "b": [1.5, -1], "from": 0.243, "until": 0.29},
+        ],
+    )
+    assert happened(found) == [("begin", "rod"), ("end", "rod")]
+    # On the curve, down which it falls from rest since the rod has let it go.
+    (_, held), (x, y) = column(found, "bead.position")
+    v = column(found, "bead.velocity")[1]
+    assert y == pytest.approx(np.exp(-x) / 2, rel=1e-14)
+    assert v @ v / 2 == pytest.approx(10 * (held - y), rel=1e-12)
+
+
+def test_what_ends_by_an_impact_whose_shares_are_open_has_taken_its_own() -> None:
+    # Two equal tracks and rods stop the bob, which then falls from rest about (0, 0).
+    on = {"at": [1, 0], "slope": "-pi/2"}
+    rod = {"kind": "rod", "a": "bob", "b": [0, 0], "from": 0.5}
+    until = {"event": {"kind": "begin", "name": "r"}}
+    found = solved(
+        [0.5 + 2.0**-10, 1.0],
+        gravity=[0, -10],
+        bodies={"bob": {"mass": 1, "at": [1, 0]}},
+        connections=[
+            *({"kind": "track", "name": name, "place": "bob", "on": on, "until": until} for name in ("line", "alike")),
+            {**rod, "name": "r"},
+            {**rod, "name": "again"},
+        ],
+    )
+    assert happened(found) == [("begin", "r"), ("begin", "again"), ("end", "line"), ("end", "alike")]
+    assert np.linalg.norm(column(found, "bob.velocity")[0]) < 10 * 2.0**-10
