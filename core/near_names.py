@@ -51,9 +51,11 @@ def nearest(
     return known[found[0]] if found else None
 
 
-def did_you_mean(given: object, names: Iterable[str]) -> str | None:
-    """Return the question for the name that was probably meant in a scene; None if none is near."""
-    near = nearest(given, names, ALIKE_IN_SCENE) if isinstance(given, str) else None
+def did_you_mean(
+    given: object, names: Iterable[str], synonyms: Mapping[str, Iterable[str]] | None = None
+) -> str | None:
+    """Return the question for the name that was probably meant in a scene; None if none is near: see `nearest`."""
+    near = nearest(given, names, ALIKE_IN_SCENE, synonyms) if isinstance(given, str) else None
     return None if near is None else f'did you mean "{near}"?'
 
 

@@ -69,6 +69,8 @@ class Connection:
     """What ties bodies to one another and to the ground; `name` is by default its kind and number."""
 
     kind: ClassVar[str]
+    # Other words for the kind, by which clients may look for it.
+    synonyms: ClassVar[tuple[str, ...]] = ()
     # Every kind is a dataclass; here a field would come before those of the kinds.
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     name: str | None

@@ -251,6 +251,7 @@ class Blow(Connection):
     in_: Literal["body"] | None = None
     name: str | None = None
     kind: ClassVar[str] = "impulse"
+    synonyms: ClassVar[tuple[str, ...]] = ("blow", "strike", "hit", "kick")
 
     @property
     def measure(self) -> str:

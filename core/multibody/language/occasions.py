@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.language.numerals import Numerals
+from core.multibody.language.written import Number
 from core.near_names import did_you_mean, near_and_all
 
 EVENTS = (
@@ -28,6 +29,9 @@ EVENTS = (
     "impulse",
 )
 """Kinds of events that may be occasions: those after which a motion goes on."""
+
+ONCE = ("begin", "end", "impulse")
+"""Kinds of events that happen once to a connection."""
 
 MOST_COUNTED = 1000
 """Largest `nth` of an occasion."""
@@ -103,11 +107,12 @@ class AtEvent:
 
 @dataclass(frozen=True)
 class PassedValue:
-    """The n-th time that a quantity passes through a value."""
+    """The n-th time that a quantity passes through a value, which is `written` in a unit of its own or that of it."""
 
     quantity: str
     value: Ball
     nth: int
+    written: Number
     path: Path
     time = None
 
@@ -121,13 +126,13 @@ class PassedValue:
         return passages >= self.nth
 
 
-def occasion(written: object, numerals: Numerals, connections: Collection[str], path: Path) -> Occasion:
+def occasion(written: object, numerals: Numerals, events: Mapping[str, Collection[str]], path: Path) -> Occasion:
     """Return an occasion as it was written: a number, ``{"event": {...}}`` or ``{"when": {...}}``.
 
     Parameters
     ----------
-    connections : collection of str
-        Names of the connections of the scene.
+    events : mapping of str to collection of str
+        The kinds of events that may happen to connections and their parts, by names of these.
 
     Raises
     ------
@@ -135,14 +140,14 @@ def occasion(written: object, numerals: Numerals, connections: Collection[str], 
         For a time before the start, and for what is no occasion.
     """
     if isinstance(written, Mapping) and set(written) == {"event"}:
-        return _event(_members(written["event"], ("name",), ("kind", "nth"), (*path, "event")), connections, path)
+        return _event(_members(written["event"], ("name",), ("kind", "nth"), (*path, "event")), events, path)
     if isinstance(written, Mapping) and set(written) == {"when"}:
         where = (*path, "when")
         given = _members(written["when"], ("quantity", "equals"), ("nth",), where)
         if not isinstance(given["quantity"], str):
             raise InvalidParameter((*where, "quantity"), "be the name of a quantity, such as bob.position.x")
         value = numerals.number(given["equals"], (*where, "equals"))
-        return PassedValue(given["quantity"], value, _count(given, where), (*where, "quantity"))
+        return PassedValue(given["quantity"], value, _count(given, where), given["equals"], where)
     if isinstance(written, Mapping) and not {"value", "degrees"} & set(written):
         rule = 'be a time, {"event": {"kind", "name", "nth"}} or {"when": {"quantity", "equals", "nth"}}'
         raise InvalidParameter(path, rule)
@@ -152,16 +157,30 @@ def occasion(written: object, numerals: Numerals, connections: Collection[str], 
     return AtTime(time)
 
 
-def _event(given: Mapping[str, Any], connections: Collection[str], path: Path) -> AtEvent:
+def _event(given: Mapping[str, Any], events: Mapping[str, Collection[str]], path: Path) -> AtEvent:
     where, kind, name = (*path, "event"), given.get("kind"), given["name"]
     if kind is not None and kind not in EVENTS:
         raise InvalidParameter(
             (*where, "kind"), f"be one of {', '.join(EVENTS)}", remedy=did_you_mean(str(kind), EVENTS)
         )
-    if not isinstance(name, str) or not any(name == one or name.startswith(f"{one}.") for one in connections):
-        remedy = near_and_all(str(name), connections, "connections")
-        raise InvalidParameter((*where, "name"), "name a connection of the scene, or a part of one", remedy=remedy)
-    return AtEvent(kind, name, _count(given, where))
+    found = AtEvent(kind, str(name), _count(given, where))
+    counted = [one for part, kinds in events.items() for one in kinds if replace(found, kind=None).counts(one, part)]
+    if not counted:
+        names = [part for part, kinds in events.items() if kinds]
+        rule, remedy = "name a connection to which something may happen, or a part", "give a time, or a value"
+        if names:
+            remedy = near_and_all(name, names, "connections with events")
+        raise InvalidParameter((*where, "name"), rule, remedy=remedy)
+    if kind is not None and kind not in counted:
+        rule = (
+            f'be one of {", ".join(one for one in EVENTS if one in counted)}, as no other may happen to "{found.name}"'
+        )
+        raise InvalidParameter((*where, "kind"), rule, remedy=did_you_mean(kind, counted))
+    often = [one for one in counted if kind in (None, one)]
+    if set(often) <= {*ONCE} and found.nth > len(often):
+        rule = f'be at most {len(often)}, as nothing more of that may happen to "{found.name}"'
+        raise InvalidParameter((*where, "nth"), rule)
+    return found
 
 
 def _members(given: object, needed: Sequence[str], others: Sequence[str], path: Path) -> Mapping[str, Any]:

@@ -58,7 +58,9 @@ def _connection(entry: Any, path: Path, kinds: Mapping[str, type[Connection]]) -
         raise InvalidParameter(path, "be an object")
     kind = entry.get("kind")
     if not isinstance(kind, str) or kind not in kinds:
-        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(kinds)}", remedy=did_you_mean(kind, kinds))
+        synonyms = {name: one.synonyms for name, one in kinds.items()}
+        remedy = did_you_mean(kind, kinds, synonyms)
+        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(kinds)}", remedy=remedy)
     rest = {key: value for key, value in entry.items() if key != "kind"}
     return kinds[kind](**_object(rest, path, kinds[kind]))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import Ball
+from core.multibody.language.declared_units import Measured, is_plain
 from core.multibody.language.occasions import AtEvent, Event, Occasion, PassedValue, occasion
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.phase_ends import expansions_of
@@ -17,6 +18,9 @@ from core.multibody.phases.watches import Passage, Watch
 from core.multibody.search.first_of_motion import Expansions
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described
+from core.multibody.table.law_pieces import switching
+from core.multibody.trajectory.columns import COLUMNS_OF_STATES, Columns
+from core.multibody.trajectory.occurrences import component, unknown_quantity
 from core.multibody.trajectory.quantities import Sought, sought_in
 
 Kind = Literal["begin", "end", "impulse"]
@@ -63,9 +67,12 @@ class Schedule:
     Attributes
     ----------
     entries : list of Entry
+    checked : bool
+        Whether the quantities are known to be some of the scene.
     """
 
     entries: list[Entry] = field(default_factory=list)
+    checked: bool = False
 
     @classmethod
     def of(cls, base: Described) -> Schedule:
@@ -76,14 +83,17 @@ class Schedule:
         InvalidParameter
             For what is no occasion, and for a time at which something is to end before it begins, or as it does.
         """
-        names, found = base.scene.names(), list[Entry]()
+        names, found, events = base.scene.names(), list[Entry](), _events_of(base)
         for name, (i, connection) in zip(names, base.scene.numbered(), strict=True):
             times = dict[str, Ball]()
             for field_, written in connection.occasions().items():
                 path = ("connections", i, field_)
-                when = occasion(written, base.measures.numerals, names, path)
+                when = occasion(written, base.measures.numerals, _before(events, name, KINDS[field_]), path)
                 if field_ != "at" and when.time is not None and not when.time > 0:
-                    raise InvalidParameter(path, "be later than the start", remedy="leave it out")
+                    rule, remedy = "be later than the start", "leave it out: a connection acts from the start by itself"
+                    if field_ == "until":
+                        remedy = "leave out the connection, which would never act"
+                    raise InvalidParameter(path, rule, remedy=remedy)
                 found.append(Entry(name, KINDS[field_], when, path))
                 if when.time is not None:
                     times[field_] = when.time
@@ -135,14 +145,17 @@ class Schedule:
         waiting = [entry for entry in self.entries if entry.occasion.passed is not None]
         if not waiting:
             return
-        named, expansions = sought_in(phase.models[0].whole, phase.determined), expansions_of(phase)
+        whole = phase.models[0].whole
+        named, expansions = sought_in(whole, phase.determined), expansions_of(phase)
         for entry in waiting:
             passed = entry.occasion.passed
             assert passed is not None
             one = named(passed.quantity)
-            if one is None or one.ambiguous:
-                rule = "name a column of the answer, or a component of one, that is no length and no attitude"
-                raise InvalidParameter(passed.path, rule)
+            if not self.checked:
+                _check_quantity(passed, one, phase)
+            if one is None:
+                # A force that is not determined in a phase is not watched in it.
+                continue
             side, power = _side(one, passed, expansions)
             if entry.side and side and side != entry.side:
                 entry.passages += 1
@@ -156,6 +169,48 @@ class Schedule:
                 passage=Passage(one.less(passed.value), one.of_forces),
             )
             yield entry, watch
+        self.checked = True
+
+
+def _events_of(base: Described) -> dict[str, set[str]]:
+    """Return what may happen to connections and their parts, by names of these."""
+    found: dict[str, set[str]] = {}
+    for name, (_, connection) in zip(base.scene.names(), base.scene.numbered(), strict=True):
+        found[name] = {KINDS[field_] for field_ in connection.occasions()}
+        if base.scene.switches_in(connection):
+            found[name].add("switch")
+    for law in base.measures.table.laws:
+        if switching([law]):
+            found.setdefault(law.name, set()).add("switch")
+    for one in base.measures.unilateral:
+        kinds = found.setdefault(one.name, set())
+        kinds |= {one.closes, one.opens}
+        if one.slips:
+            kinds |= {"slip", "roll" if one.rolls else "stick"}
+        if one.restitution > 0:
+            kinds.add("settle")
+    return found
+
+
+def _before(events: Mapping[str, set[str]], name: str, kind: Kind) -> Mapping[str, set[str]]:
+    """Return what may happen before something happens to a connection."""
+    # Nothing happens to what has not begun.
+    return {**events, name: events[name] - {kind} if kind == "end" else set()}
+
+
+def _check_quantity(passed: PassedValue, one: Sought | None, phase: Phase) -> None:
+    """Raise `InvalidParameter` for what is no quantity of the scene, or has no sign, and for a unit of another."""
+    if one is not None and one.ambiguous:
+        rule = "be no length and no component of an attitude, of which no sign says that they pass through a value"
+        raise InvalidParameter((*passed.path, "quantity"), rule)
+    if one is not None and is_plain(passed.written):
+        return
+    whole, times = phase.models[0].whole, np.zeros(1)
+    columns = Columns(whole, times, whole.states(times), "closed form").chosen(COLUMNS_OF_STATES, phase.determined)
+    column = component(columns, passed.quantity)
+    if one is None or column is None:
+        raise unknown_quantity(passed.quantity, (*passed.path, "quantity"), columns)
+    Measured(column.unit).check(passed.written, (*passed.path, "equals"), None)
 
 
 def _side(one: Sought, passed: PassedValue, expansions: Expansions) -> tuple[int, int]:

@@ -133,12 +133,18 @@ def _require_name(quantity: object, path: Path) -> None:
 
 
 def unknown(search: ValueSearch | ExtremesOf, index: int, columns: Mapping[str, Column]) -> InvalidParameter:
+    """Return the fault of a quantity that is searched, and that the scene has not."""
+    path = ("when", "quantity") if isinstance(search, ValueSearch) else ("extremes",)
+    return unknown_quantity(search.quantity, ("outputs", index, *path), columns)
+
+
+def unknown_quantity(quantity: str, path: Path, columns: Mapping[str, Column]) -> InvalidParameter:
     """Return the fault of a quantity that the scene has not."""
-    near = did_you_mean(search.quantity, _quantities(columns))
+    near = did_you_mean(quantity, _quantities(columns))
     components = 'take a component of a vector by ".x", its length by ".length"'
     return InvalidParameter(
-        ("outputs", index, "when", "quantity") if isinstance(search, ValueSearch) else ("outputs", index, "extremes"),
-        f'name a quantity of the scene, unlike "{search.quantity[:80]}"; there are {", ".join([*columns][:40])}',
+        path,
+        f'name a quantity of the scene, unlike "{quantity[:80]}"; there are {", ".join([*columns][:40])}',
         remedy=f"{near} {components}" if near else components,
     )
 

@@ -397,12 +397,29 @@ def rod_until(moment: Any) -> dict[str, Any]:
     [
         (rod_until(-1), ("until",), "be at least 0 s"),
         (rod_until(0), ("until",), "be later than the start"),
+        ({**rod_until(1), "from": 0}, ("from",), "be later than the start"),
+        (rod_until({"event": {"name": "rod-1"}}), ("until", "event", "name"), "to which something may happen"),
+        (rod_until({"event": {"name": "cord.zzz"}}), ("until", "event", "name"), "to which something may happen"),
+        (
+            rod_until({"event": {"name": "cord", "kind": "touch"}}),
+            ("until", "event", "kind"),
+            "one of settle, taut, sl",
+        ),
+        (rod_until({"event": {"name": "kick", "nth": 2}}), ("until", "event", "nth"), "be at most 1"),
+        (rod_until({"event": {"name": "floor", "kind": "settle"}}), ("until", "event", "kind"), "touch, lift-off"),
+        (
+            rod_until({"when": {"quantity": "bob.position.length", "equals": 1}}),
+            ("until", "when", "quantity"),
+            "no leng",
+        ),
+        (rod_until({"when": {"quantity": "bob.velocity.x", "equals": {"value": 1, "unit": "m"}}}),)
+        + (("until", "when", "equals", "unit"), "be a unit of m/s"),
         ({**rod_until(0.3), "from": 0.5}, ("until",), "be later than the time at which the connection begins"),
         ({**rod_until("1/3"), "from": "1/3"}, ("until",), "be later than the time at which the connection begins"),
         (rod_until({"event": {"name": "rob"}}), ("until", "event", "name"), "name a connection"),
         (rod_until({"event": {"name": "rod-1", "kind": "tuch"}}), ("until", "event", "kind"), "be one of touch"),
         (rod_until({"event": {"name": "rod-1", "nth": 0}}), ("until", "event", "nth"), "whole number"),
-        (rod_until({"when": {"quantity": "bob.x", "equals": 0}}), ("until", "when", "quantity"), "name a column"),
+        (rod_until({"when": {"quantity": "bob.x", "equals": 0}}), ("until", "when", "quantity"), "name a quant"),
         (rod_until({"when": {"quantity": "bob.position.x"}}), ("until", "when", "equals"), "be given"),
         (rod_until({"whn": {}}), ("until",), "be a time"),
         (rod_until({"value": 1, "unit": "m"}), ("until", "unit"), "be a unit of s"),
@@ -414,9 +431,31 @@ def rod_until(moment: Any) -> dict[str, Any]:
     ],
 )
 def test_what_cannot_be_is_refused(connection: dict[str, Any], path: tuple[str, ...], rule: str) -> None:
+    others = [
+        {"kind": "string", "name": "cord", "through": ["bob", [0, 0]], "restitution": 0.5},
+        {"kind": "contact", "name": "floor", "place": "bob", "on": {"at": [0, -9]}},
+        {"kind": "impulse", "name": "kick", "place": "bob", "impulse": [0, 1]},
+    ]
     with pytest.raises(InvalidParameter, match=rule) as refused:
-        solved([1.0], connections=[connection], **BOB)
+        solved([1.0], connections=[connection, *others], **BOB)
     assert refused.value.path == ("connections", 0, *path)
+
+
+@pytest.mark.parametrize(
+    ("connection", "remedy"),
+    [
+        (rod_until({"event": {"name": "flor"}}), 'did you mean "floor"?'),
+        (rod_until({"when": {"quantity": "bob.velocty.x", "equals": 1}}), 'did you mean "bob.velocity.x"?'),
+        ({"kind": "blow", "place": "bob", "impulse": [0, 1]}, 'did you mean "impulse"?'),
+        (rod_until(0), "leave out the connection"),
+    ],
+)
+def test_what_was_probably_meant_is_named(connection: dict[str, Any], remedy: str) -> None:
+    floor = {"kind": "contact", "name": "floor", "place": "bob", "on": {"at": [0, -9]}}
+    with pytest.raises(InvalidParameter) as refused:
+        solved([1.0], connections=[connection, floor], **BOB)
+    assert refused.value.remedy is not None
+    assert remedy in refused.value.remedy
 
 
 def test_equilibria_are_not_answered_where_connections_change() -> None:
