@@ -392,6 +392,10 @@ def rod_until(moment: Any) -> dict[str, Any]:
     return {"kind": "rod", "a": "bob", "b": [0, 0], "until": moment}
 
 
+def rod_when(quantity: str, value: Any) -> dict[str, Any]:
+    return rod_until({"when": {"quantity": quantity, "equals": value}})
+
+
 @pytest.mark.parametrize(
     ("connection", "path", "rule"),
     [
@@ -412,8 +416,7 @@ def rod_until(moment: Any) -> dict[str, Any]:
             ("until", "when", "quantity"),
             "no leng",
         ),
-        (rod_until({"when": {"quantity": "bob.velocity.x", "equals": {"value": 1, "unit": "m"}}}),)
-        + (("until", "when", "equals", "unit"), "be a unit of m/s"),
+        (rod_when("bob.velocity.x", {"value": 1, "unit": "m"}), ("until", "when", "equals", "unit"), "a unit of m/s"),
         ({**rod_until(0.3), "from": 0.5}, ("until",), "be later than the time at which the connection begins"),
         ({**rod_until("1/3"), "from": "1/3"}, ("until",), "be later than the time at which the connection begins"),
         (rod_until({"event": {"name": "rob"}}), ("until", "event", "name"), "name a connection"),
