@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from flint import arb, arb_mat
 
@@ -26,7 +26,9 @@ REACHED = 2.0**-200
 """Share of the coordinates, or of one, below which a step has reached the place: far below the digits of doubles."""
 
 
-def linear_equations(equations: Mapping[str, Sum], start: Mapping[str, Ball]) -> Iterator[LinearEquations]:
+def linear_equations(
+    equations: Mapping[str, Sum], start: Mapping[str, Ball], lengths: Sequence[Sum], tensions: Sequence[Sum]
+) -> Iterator[LinearEquations]:
     """Yield the matrices of equations, as a whole if they are linear, else about a place of rest, if one is found.
 
     Parameters
@@ -35,6 +37,9 @@ def linear_equations(equations: Mapping[str, Sum], start: Mapping[str, Ball]) ->
         What is zero, by the variable whose equation it is; without multipliers and values of laws.
     start : mapping of str to ball
         Where a place of rest is looked for from.
+    lengths, tensions : sequence of Sum
+        What is positive, and what is not negative, at any place that can be: the equations alone hold a bob on a string
+        that has no length, or a negative one, as well.
     """
     names = list(equations)
     known = {variable for one in equations.values() for term in one.terms for variable, _ in term.factors}
@@ -50,6 +55,7 @@ def linear_equations(equations: Mapping[str, Sum], start: Mapping[str, Ball]) ->
         starts = [{name: start[name] + x for name in names} for x in ASIDE]
         starts += [dict.fromkeys(names, ONE * x) for x in HANGING]
         places = [place for one in starts if (place := _place_of_rest(equations, one)) is not None]
+        places = [place for place in places if _can_be(place, lengths, tensions)]
         # Small motions stay small about a stable place.
         found = next((place for place in places if _is_stable(equations, place)), next(iter(places), None))
         if found is None:
@@ -57,6 +63,13 @@ def linear_equations(equations: Mapping[str, Sum], start: Mapping[str, Ball]) ->
         about, shown, right = found, {name: in_doubles(x) for name, x in found.items()}, (0.0,) * len(names)
     mass, damping, stiffness = (_matrix(equations, order, about) for order in (2, 1, 0))
     yield LinearEquations(tuple(names), shown, mass, damping, stiffness, right)
+
+
+def _can_be(place: Mapping[str, Ball], lengths: Sequence[Sum], tensions: Sequence[Sum]) -> bool:
+    """Return whether all lengths are positive at a place of rest, and no tension negative, as far as it says so."""
+    known, rounding = set(place), REACHED * (1 + max(map(abs, place.values())))
+    long = all(one.value(place) > rounding for one in lengths if one.names() <= known)
+    return long and not any(one.value(place) < -rounding for one in tensions if one.names() <= known)
 
 
 def _is_stable(equations: Mapping[str, Sum], place: Mapping[str, Ball]) -> bool:

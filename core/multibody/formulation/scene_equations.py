@@ -49,6 +49,7 @@ class _Written:
     lagrangian: list[Sum] | None = field(default_factory=list)
     conserved: list[tuple[Conserved, Ball]] = field(default_factory=list)
     motion: dict[str, Sum] = field(default_factory=dict)
+    smooth: list[tuple[Mapping[str, Sum], Mapping[str, Ball]]] = field(default_factory=list)
     linear: list[LinearEquations] = field(default_factory=list)
     closed: dict[str, Node] = field(default_factory=dict)
     numbers: dict[str, Ball] = field(default_factory=dict)
@@ -103,7 +104,11 @@ def equations_of(found: Modelled, reserved: Sequence[str] = ()) -> SceneEquation
     conserved = _with_one_energy(found, written.conserved, len(moving))
     constants = Constants([*reserved, *written.numbers])
     places = _places(found, written)
-    written.forces |= _forces(found, written.places)
+    held = _forces(found, written.places)
+    written.forces |= {name: node_of_sum(total) for name, total in held.items()}
+    lengths, tensions = _kept_positive(found, written.places, held)
+    for equations, start in written.smooth:
+        written.linear += linear_equations(equations, start, lengths, tensions)
     lagrangian = written.lagrangian if moving else None
     shown = SceneEquations(
         coordinates={
@@ -199,7 +204,7 @@ def _write_part(
         # Others are written with the direction of friction at the start, and hold then alone.
         written.motion |= found.equations
     if not multipliers and not piece.table.acting:
-        written.linear += linear_equations(found.equations, chart.start)
+        written.smooth.append((found.equations, chart.start))
     written.start |= chart.start
     written.rates |= chart.rates
     written.closed |= closed_forms(chart, motion, found.equations)
@@ -245,14 +250,31 @@ def _conserve(
         written.conserved.append((one, one.formula.value(start, rates)))
 
 
-def _forces(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Node]:
+def _kept_positive(
+    found: Modelled, places: Mapping[int, Sum], forces: Mapping[str, Sum]
+) -> tuple[list[Sum], list[Sum]]:
+    """Return lengths that are positive and tensions that are not negative, as far as they are written."""
+    measures, expressions = found.described.measures, found.whole.reduced.expressions
+    lengths: list[Sum] = []
+    tensions: list[Sum] = []
+    for limit in measures.limits:
+        if limit.length is not None:
+            own = {i: expressions[i] for key in limit.length for i in key}
+            if all(key[0] in places for expression in own.values() for key in expression if key):
+                lengths.append(Sum.of(limit.length, {i: _substituted(one, places) for i, one in own.items()}))
+        if limit.force is not None:
+            tensions += filter(None, [forces.get(measures.forces[limit.force].name)])
+    return lengths, tensions
+
+
+def _forces(found: Modelled, places: Mapping[int, Sum]) -> dict[str, Sum]:
     """Return the forces of connections, as far as they follow from the motion."""
     measures, expressions = found.described.measures, found.whole.reduced.expressions
     turning = any(row.slide is not None for row in measures.table.rows)
     if turning or measures.table.acting or len(places) < len(found.whole.reduced.table.names):
         return {}
     own = [_substituted(expression, places) for expression in expressions]
-    return {name: node_of_sum(total) for name, total in constraint_forces(measures.table, measures.forces, own).items()}
+    return constraint_forces(measures.table, measures.forces, own)
 
 
 def _places(found: Modelled, written: _Written) -> dict[str, Node]:

@@ -76,7 +76,7 @@ class Sum:
         return cls({Term((), "sin", ((name, 1.0),)): ONE})
 
     @classmethod
-    def of(cls, poly: Poly, values: Sequence[Sum]) -> Sum:
+    def of(cls, poly: Poly, values: Sequence[Sum] | Mapping[int, Sum]) -> Sum:
         """Return a polynomial of coordinates that are sums."""
         parts = []
         for key, factor in poly.items():

@@ -342,3 +342,27 @@ def test_angles_of_bodies_are_those_of_their_columns_with_their_turns(
     for name, formula in answer.equations.coordinates.items():
         assert formula in {f"{one}.angle" for one in columns}
         assert abs(answer.equations.start[name].value - columns[formula.removesuffix(".angle")]) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("masses", "spring", "rests"),
+    [
+        # cos(theta) = 1/2 where the bob is at the pulley; upside down at a negative distance; hanging 0.327 m below.
+        ((1, 2), None, False),
+        ((5, 1), {"b": [-1, -10], "stiffness": 30, "rest_length": 1}, False),
+        ((1, 2), {"b": [-1, -4], "stiffness": 30, "rest_length": 1}, True),
+    ],
+)
+def test_small_motions_are_about_places_that_can_be(
+    masses: tuple[int, int], spring: dict[str, Any] | None, rests: bool
+) -> None:
+    bodies = {"weight": {"mass": masses[0], "at": [-1, -2]}, "bob": {"mass": masses[1], "at": [0.6, -0.8]}}
+    connections: list[dict[str, Any]] = [{"kind": "string", "through": ["weight", [-1, 0], [0, 0], "bob"]}]
+    if spring is not None:
+        connections.append({"kind": "spring", "a": "weight", **spring})
+    scene = scene_from({"gravity": [0, -9.81], "bodies": bodies, "connections": connections})
+    answer = solve_scene(scene, [], ["equations", "equilibria"])
+    assert answer.equations is not None
+    places = [one.about["weight.y"] for one in answer.equations.linear]
+    assert places == pytest.approx([one.positions["weight"][1] for one in answer.equilibria or ()])
+    assert bool(places) == rests
