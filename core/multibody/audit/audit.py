@@ -24,7 +24,7 @@ from core.multibody.audit.definitions import Description
 from core.multibody.audit.energy import Energies, potential_error
 from core.multibody.audit.equilibria import check_equilibria
 from core.multibody.audit.failure import ROUNDING, Ledger, Verdict
-from core.multibody.audit.impacts import Impacts
+from core.multibody.audit.impacts import Impacts, is_sudden
 from core.multibody.audit.laws_at_samples import MeasureValues, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.occasions import check_occasions
@@ -258,7 +258,7 @@ class _Audit:
                 }
                 quick = quickness(description, places, *largest_rates(rated))
                 placed = windows(self.random, answer, self.begin, self.end, quick)
-                if any(event.impulses for event in answer.events):
+                if any(map(is_sudden, answer.events)):
                     impacts = Impacts(answer, self.random, quick, (self.stage.begin, self.end))
                     struck = impacts.times
                 if answer.occurrences or answer.extremes:

@@ -80,12 +80,12 @@ class Impacts:
             first = time if at_begin else begin + 3.0 * self.step
             if at_begin and not (time == begin and 3.0 * self.step < time):
                 continue
-            if not (at_begin or any(event.impulses for event in events)) or not first <= time < end - 3.0 * self.step:
+            if not (at_begin or any(map(is_sudden, events))) or not first <= time < end - 3.0 * self.step:
                 continue
             alone = (np.abs(times - time) < 4.0 * self.step).sum() == 1
             # Times of doubles are too coarse where the step is next to nothing beside them.
             if alone and self.step > 2.0**-26 * time and not _accumulates(answer, time, 4.0 * self.step):
-                self.groups.append([event for event in events if event.impulses] or events[:1])
+                self.groups.append([event for event in events if is_sudden(event)] or events[:1])
         if len(self.groups) > MOST_IMPACTS:
             self.groups = random.sample(self.groups, MOST_IMPACTS)
         steps = self.step * np.array([-1.0, -2.0, -3.0, 1.0, 2.0, 3.0])
@@ -237,6 +237,11 @@ class Impacts:
                         np.where(held & (bounced | (touch.restitution == 0.0)), left, 0.0),
                         MARGIN * known[rows],
                     )
+
+
+def is_sudden(event: MotionEvent) -> bool:
+    """Return whether an event changes rates: connections may share their impulses in other ways, not the energy."""
+    return bool(event.impulses) or event.energy_loss != 0.0
 
 
 def _within_its_cone(event: MotionEvent, touch: Touch) -> bool:

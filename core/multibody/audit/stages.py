@@ -17,6 +17,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.bodies import RigidBody
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definitions import Description, description_of
+from core.multibody.audit.impacts import is_sudden
 from core.multibody.audit.placement import Numbers, Placement, Pose
 from core.multibody.audit.samples import Columns, Part, samples_of
 from core.multibody.language.scene import Scene, part_of
@@ -116,7 +117,7 @@ def _ended_after_impulses(answer: SceneSolution, time: float) -> set[str]:
     for event in answer.events:
         if event.time == time:
             # What begins may take impulses that are not determined, and so not listed.
-            struck = struck or bool(event.impulses) or event.kind in ("begin", "impulse")
+            struck = struck or is_sudden(event) or event.kind in ("begin", "impulse")
             if event.kind == "end" and struck:
                 found.add(event.name)
     return found

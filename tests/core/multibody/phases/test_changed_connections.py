@@ -869,3 +869,27 @@ def test_what_ends_by_an_impact_whose_shares_are_open_has_taken_its_own() -> Non
     )
     assert happened(found) == [("begin", "r"), ("begin", "again"), ("end", "line"), ("end", "alike")]
     assert np.linalg.norm(column(found, "bob.velocity")[0]) < 10 * 2.0**-10
+
+
+def test_what_shares_its_impulses_with_others_takes_energy() -> None:
+    # The loop of two bodies on a third closes at once: its impulses are not determined, the energy is.
+    spins = {"a": (1, 2, 0.3), "b": (0.5, -1, 0.2), "c": (0, 1, 2)}
+    moments = {"a": (0.1, 0.2, 0.25), "b": (0.05, 0.03, 0.07), "c": (0.05, 0.06, 0.07)}
+    bodies = {
+        name: {"mass": 1, "at": [0, 0, 0], "moments": moments[name], "angular_velocity": spins[name]} for name in spins
+    }
+    found = solved(
+        [0.3],
+        ("trajectory", "energy-in-time"),
+        bodies=bodies,
+        connections=[
+            {"kind": "pin", "name": "hinge", "a": "b", "b": "c", "axis": [0, 1, 1], "from": 0.2},
+            {"kind": "weld", "name": "one", "a": "a", "b": "b", "from": 0.2},
+            {"kind": "weld", "name": "two", "a": "a", "b": "c", "from": {"event": {"name": "hinge"}}},
+        ],
+    )
+    energy = sum(x * w * w / 2 for name in spins for x, w in zip(moments[name], spins[name], strict=True))
+    lost = sum(one.energy_loss for one in found.events)
+    assert not found.events[-1].impulses
+    assert found.events[-1].energy_loss > 1e-3
+    assert column(found, "energy.kinetic")[0] == pytest.approx(energy - lost, rel=1e-13)
