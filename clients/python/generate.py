@@ -108,7 +108,8 @@ class Types:
             annotation = self.annotation(inner, sent=sent)
             annotation = annotation if field in required else f"NotRequired[{annotation}]"
             if iskeyword(field):
-                words.append(f"{field!r}: {annotation}")
+                # Evaluated at once, unlike what stands in a class: it may name what is defined further down.
+                words.append(f"{field!r}: {annotation!r}")
             else:
                 lines.append(f"    {field}: {annotation}")
         head = [
