@@ -10,6 +10,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.double_double import dd_add, dd_div_d, dd_mul_d
+from core.errors import AccuracyUnreachable
 from core.multibody.algebra.bernstein import horner, slope_at
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.search.curves import Curve
@@ -55,10 +56,14 @@ def located(motion: Expanded, quantity: Callable[[Pieces], Curve], time: float, 
     Raises
     ------
     NotLocated
-        If Newton's method does not settle.
+        If Newton's method does not settle, or comes to a place where the motion has no series.
     """
     for _ in range(_ROUNDS):
-        pieces = motion(np.array([time]), np.array([reach]))
+        try:
+            pieces = motion(np.array([time]), np.array([reach]))
+        except AccuracyUnreachable:
+            # As where a length is zero by whose inverse a force has its direction.
+            break
         length = float(pieces.lengths[0])
         own = quantity(pieces)
         curve = own.values[0]

@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 from flint import arb
 from mpmath import acos, cos, mp, mpf, pi, sin
+from scipy.integrate import solve_ivp
 
 from core.arrays import Floats
 from core.balls import precision
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import BITS
+from core.multibody.language.reading import scene_from
 from core.multibody.search import followed
 from core.multibody.search.curves import Curve
 from core.multibody.search.first_zero import FirstZero
@@ -22,6 +24,7 @@ from core.multibody.search.followed import Found
 from core.multibody.search.location import located
 from core.multibody.search.pieces import COEFFICIENTS, Pieces
 from core.multibody.search.taylor import ORDER
+from core.multibody.solve import solve_scene
 
 LENGTH = 0.5
 
@@ -203,3 +206,29 @@ def test_a_search_of_too_many_pieces_is_refused(monkeypatch: pytest.MonkeyPatch)
     assert first(level("2"), end=9.9) is None
     with pytest.raises(BudgetExceeded):
         first(level("2"), end=1e4)
+
+
+@pytest.mark.parametrize("coefficient", [0.001, 0.1, 1.0])
+def test_a_zero_is_found_where_the_motion_has_no_series(coefficient: float) -> None:
+    """A bob swings into the end of its damper, which loses its direction there; beside Runge and Kutta's method."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": 1, "at": [0.6, -0.8]}},
+        "connections": [
+            {"kind": "rod", "a": "bob", "b": [0, 0]},
+            {"kind": "damper", "a": "bob", "b": [0, -1], "coefficient": coefficient},
+        ],
+    }
+    answer = solve_scene(scene_from(scene), [0.0, 1.0])
+
+    def rates(_: float, state: Floats) -> list[float]:
+        return [state[1], -9.81 * math.sin(state[0]) - coefficient * math.cos(state[0] / 2) ** 2 * state[1]]
+
+    def angle(_: float, state: Floats) -> float:
+        return float(state[0])
+
+    start = [math.atan2(0.6, 0.8), 0.0]
+    events = solve_ivp(rates, (0.0, 1.0), start, method="DOP853", rtol=1e-12, atol=1e-14, events=angle).t_events
+    assert answer.ended is not None
+    assert answer.ended.kind == "singular"
+    assert abs(answer.ended.time - events[0][0]) < answer.ended.error
