@@ -222,7 +222,8 @@ class Measures:
         """Hold the orientation of one body to another."""
         frames = [None if point.body is None else self.coordinates.frames[point.body] for point in (a, b)]
         axes = all(frame is None or frame.orients for frame in frames)
-        if not axes or (self.dimension == 2 and None not in frames):
+        # A sketch moves angles beside their cosines and sines, which alone places follow.
+        if not axes or (self.dimension == 2 and None not in frames and not self.sketch):
             turns = [{} if frame is None or frame.turn is None else coordinate(frame.turn) for frame in frames]
             if all(frame is None or frame.turn is not None for frame in frames):
                 # One row, whatever the attitude: cosine and sine would need both, of which one follows from the other.

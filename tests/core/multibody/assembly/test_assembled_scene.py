@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize_scalar
 
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.assembly.assembled_scene import assembled
@@ -203,6 +203,26 @@ def test_refused_places_name_the_nearest_that_fit() -> None:
         solve_scene(read({"gravity": [0, -9.81], "bodies": {"bob": BOB}, "connections": [ROD, ROD | {"b": [3, 0]}]}))
     assert refused.value.remedy is not None
     assert "no places satisfy them all" in refused.value.remedy
+
+
+@pytest.mark.parametrize(("slope", "spot"), [(0.5, (-0.2, 0.1)), (0.0, (-0.2, 0.1)), (0.5, (0.0, 0.0))])
+def test_bodies_on_one_slider_turn_alike(slope: float, spot: tuple[float, float]) -> None:
+    body = {"mass": 1, "inertia": 0.3, "places": {"spot": spot}}
+    bodies = {"a": {**body, "at": [0, 1]}, "b": {**body, "at": [1.2, 1]}}
+    slider = {"kind": "slider", "a": "a.spot", "b": "b", "slope": slope}
+    found = solve_scene(read({"bodies": bodies, "connections": [slider], "assemble": "nearest"}))
+
+    def displacement(angle: float) -> float:
+        # Both turn by the angle; what the place is beside the line then is taken half by either body.
+        c, s = math.cos(angle), math.sin(angle)
+        place = -1.2 + c * spot[0] - s * spot[1], s * spot[0] + c * spot[1]
+        beside = math.cos(slope + angle) * place[1] - math.sin(slope + angle) * place[0]
+        return beside**2 / 2 + 2 * 0.3 * 2 * (1 - c)
+
+    angle = minimize_scalar(displacement, bounds=(-1.5, 1.5), options={"xatol": 1e-12}).x
+    assert found.assembly is not None
+    for name in ("a", "b"):
+        assert found.assembly.bodies[name].angle == pytest.approx(angle, abs=1e-7)
 
 
 def test_a_ball_that_nothing_sees_turn_keeps_its_angular_velocity() -> None:
