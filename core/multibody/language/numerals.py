@@ -165,7 +165,7 @@ class Numerals:
         if not isinstance(value, (float, int, Decimal)) and isinstance(value, Mapping):
             return self._of_object(value, path)
         plain = isinstance(value, float) and isfinite(value) and not self.doubles
-        found = _decimal(repr(value)) if plain else _exact(value, path)
+        found = _decimal(float.__repr__(value)) if plain else _exact(value, path)
         if not is_zero(found):
             self.read[path] = found
         return found + found * self.share if path in self.moved else found

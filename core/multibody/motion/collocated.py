@@ -55,7 +55,7 @@ def collocated(table: Table, arrays: Packed, units: Units, kind: str, end: float
         )
         return ended, count
 
-    return run_by(steps, (q.copy(), v.copy()), (len(q), stages + 2, 2), AT_ONCE, clock, before)
+    return run_by(steps, end, (q.copy(), v.copy()), (len(q), stages + 2, 2), AT_ONCE, clock, before)
 
 
 def pieces_of_steps(

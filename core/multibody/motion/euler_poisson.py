@@ -104,7 +104,7 @@ class EulerPoisson(Numerical):
         def steps(clock: Floats, starts: Floats, series: Floats) -> tuple[int, int]:
             return _advance(self.squares, self.torque, self.pull, y, clock, end, tolerance, starts, series)
 
-        return run_by(steps, (self.start[3:], _rates(self.start)), (9, order + 1, 2), _CHUNK)
+        return run_by(steps, end, (self.start[3:], _rates(self.start)), (9, order + 1, 2), _CHUNK)
 
 
 _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))

@@ -351,11 +351,11 @@ def integrate(
             )
         return ended, count
 
-    def stops(taken: int) -> bool:
-        return gives_up is not None and gives_up(q, v, end, taken * end / clock[0])
+    def stops(needed: float) -> bool:
+        return gives_up is not None and gives_up(q, v, end, needed)
 
     many = max(16, _CHUNK // (16 * len(q) * (order + 1)))
-    return run_by(steps, start, shape, many, clock, before, stops)
+    return run_by(steps, end, start, shape, many, clock, before, stops)
 
 
 def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:

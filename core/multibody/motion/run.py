@@ -70,12 +70,13 @@ class Run:
 
 def run_by(
     steps: Callable[[Floats, Floats, Floats], tuple[int, int]],
+    end: float,
     start: tuple[Floats, Floats],
     shape: tuple[int, ...],
     many: int,
     clock: Floats | None = None,
     before: int = 0,
-    gives_up: Callable[[int], bool] | None = None,
+    gives_up: Callable[[float], bool] | None = None,
 ) -> Run:
     """Return a run by a function that takes steps until its arrays are full.
 
@@ -83,6 +84,8 @@ def run_by(
     ----------
     steps : callable
         Moves a clock, fills in where steps start and their series; it returns how it ended, and the number of steps.
+    end : float
+        To what time they are.
     start : tuple of two ndarrays
         Places and rates at the start.
     shape : tuple of int
@@ -94,7 +97,8 @@ def run_by(
     before : int
         How many were taken until then.
     gives_up : callable, optional
-        Called with the number of steps whenever there is no more room for others: whether another method is better.
+        Called whenever there is no more room for others, with how many all of the time takes if they stay as long:
+        whether another method is better.
 
     Raises
     ------
@@ -105,16 +109,18 @@ def run_by(
     """
     clock = np.zeros(2) if clock is None else clock
     starts, series = [], []
-    taken, ended, given_up = 0, FULL, False
+    taken, ended, given_up, needed = 0, FULL, False, 0.0
     while ended == FULL and not given_up:
         if before + taken > MOST_STEPS:
-            raise BudgetExceeded("steps", before + taken, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
+            raise BudgetExceeded("steps", needed, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
         chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
         ended, count = steps(clock, chunk_starts, chunk)
         starts.append(chunk_starts[:count])
         series.append(chunk[:count])
         taken += count
-        given_up = ended == FULL and gives_up is not None and gives_up(before + taken)
+        if ended == FULL:
+            needed = (before + taken) * end / float(clock[0])
+            given_up = gives_up is not None and gives_up(needed)
     if ended == LOST:
         raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
     starts.append(clock[None, :].copy())

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import mpmath
+import numpy as np
 import pytest
 from flint import arb, fmpq
 from hypothesis import given
@@ -36,6 +37,7 @@ READ = st.just(0.0) | st.floats(1e-300, 1e300) | st.floats(-1e300, -1e-300)
 @given(READ)
 def test_a_double_is_its_shortest_decimal(number: float) -> None:
     assert ball(number).overlaps(exactly(repr(number)))
+    assert ball(np.float64(number)).overlaps(exactly(repr(number)))
     assert float(ball(number)) == number
     assert ball(number, numbers="doubles") == Fraction(number) or ball(number, numbers="doubles").overlaps(
         exactly(number)
