@@ -13,7 +13,7 @@ from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.equations.packed import FORCES
 from core.multibody.members.lane_space import LaneSpace
 from core.multibody.members.lane_table import LaneForm
-from core.multibody.motion.series import least_step
+from core.multibody.motion.step_sizes import least_step
 
 
 @kernel()
@@ -92,9 +92,9 @@ def lane_coefficients(form: LaneForm, space: LaneSpace, since: int) -> None:
 
 @kernel()
 def lane_steps(form: LaneForm, space: LaneSpace, tolerance: float) -> None:
-    """Fill in the steps of all lanes: `motion.series.step_size`."""
+    """Fill in the steps of all lanes: `motion.step_sizes.step_size`."""
     powers = space.series.shape[1]
-    sizes, best = np.empty((WIDTH, powers)), np.full(WIDTH, np.inf)
+    sizes, best, share = np.empty((WIDTH, powers)), np.full(WIDTH, np.inf), math.log(tolerance)
     for g in range(FORCES + 1):
         present = False
         for i in range(form.n):
@@ -107,6 +107,6 @@ def lane_steps(form: LaneForm, space: LaneSpace, tolerance: float) -> None:
             present = True
         if present:
             for lane in range(WIDTH):
-                best[lane] = least_step(sizes[lane], g, tolerance, powers - 1, best[lane])
+                best[lane] = least_step(sizes[lane], g, share, powers - 1, best[lane])
     for lane in range(WIDTH):
         space.h[lane] = math.exp(best[lane])

@@ -19,8 +19,9 @@ from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair, units_of
 from core.multibody.motion.numerical import CHECK_TOLERANCE, FINE_TOLERANCE, Numerical
 from core.multibody.motion.run import Run, run_by
-from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST, step_size
+from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST
 from core.multibody.motion.series_pairs import moved_pairs
+from core.multibody.motion.step_sizes import step_size
 from core.multibody.motion.turning_body import TurningBody, cross_matrix, inverse_of, product_of
 from core.multibody.table.table import Table
 

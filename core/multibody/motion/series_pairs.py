@@ -33,9 +33,8 @@ from core.multibody.motion.series import (
     SLOWED,
     STUCK,
     coefficients,
-    lowest_bound,
-    step_size,
 )
+from core.multibody.motion.step_sizes import lowest_bound, step_size
 from core.multibody.motion.turning_friction import add_turning, least_reach, longest_step, put_friction
 
 SOON, LATE = 2.0**-20, 2.0**20

@@ -10,7 +10,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.multibody.equations.packed import GROUPS, pair, two_to
-from core.multibody.motion.series import lowest_bound, step_size
+from core.multibody.motion.step_sizes import lowest_bound, step_size
 from core.multibody.motion.whole import Whole
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.search.pieces import COEFFICIENTS, Pieces, expanded_from

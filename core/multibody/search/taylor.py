@@ -17,8 +17,8 @@ from core.multibody.equations.packed import FORCES, Packed
 from core.multibody.equations.saddle import FAILED, Saddle, inverted_pairs, saddle_space
 from core.multibody.laws.corners import until_corner
 from core.multibody.motion.products import Products, products_of, started
-from core.multibody.motion.series import lowest_bound, step_size
 from core.multibody.motion.series_pairs import at_state, coefficients_pairs
+from core.multibody.motion.step_sizes import lowest_bound, step_size
 from core.multibody.motion.turning_friction import longest_step
 
 ORDER = 22
