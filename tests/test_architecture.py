@@ -403,8 +403,8 @@ TESTED_IN |= {
             "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"
         ),
         "motion/test_numerical": (
-            "equations/packed motion/products motion/returns motion/run motion/series motion/series_pairs motion/step_sizes"
-            " motion/vertical_symmetry"
+            "equations/packed motion/products motion/returns motion/run motion/series motion/series_pairs"
+            " motion/step_sizes motion/vertical_symmetry"
         ),
         "motion/test_stiff": (
             "algebra/complex_systems motion/collocated motion/collocation motion/dissipative motion/linearised"
