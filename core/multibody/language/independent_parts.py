@@ -40,7 +40,8 @@ def independent_parts(scene: Scene) -> Sequence[Scene]:
         return [scene]
     for number, connection in scene.numbered():
         named = {place.partition(".")[0] for place, _ in references(connection.formulas(), order, scene.let)}
-        if connection.everywhere and named:
+        # What begins or ends for all bodies does so once, whichever of them it waits for.
+        if connection.everywhere and (named or connection.occasions()):
             return [scene]
         joined[number] = [*_bodies_of(connection), *named]
         for name in (name for written in connection.occasions().values() for name in named_by(written)):

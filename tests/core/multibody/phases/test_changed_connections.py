@@ -871,6 +871,17 @@ def test_what_ends_by_an_impact_whose_shares_are_open_has_taken_its_own() -> Non
     assert np.linalg.norm(column(found, "bob.velocity")[0]) < 10 * 2.0**-10
 
 
+@pytest.mark.parametrize("until", [0.5, {"when": {"quantity": "a.position.x", "equals": 0.625}}])
+def test_a_field_ends_for_all_bodies_at_once(until: Any) -> None:
+    bodies = {"a": {"mass": 1, "at": [0, 0], "velocity": [1, 0]}, "b": {"mass": 2, "at": [5, 0]}}
+    field = {"kind": "field", "name": "wind", "acceleration": [1, 0], "until": until}
+    found = solved([1.0], bodies=bodies, connections=[field])
+    assert [(one.kind, one.name, one.time) for one in found.events] == [("end", "wind", 0.5)]
+    # 1/8 m until then, and half a second at 1/2 m/s.
+    np.testing.assert_allclose(column(found, "b.position"), [[5.375, 0]], rtol=1e-14)
+    np.testing.assert_allclose(column(found, "a.position"), [[1.375, 0]], rtol=1e-14)
+
+
 def test_what_shares_its_impulses_with_others_takes_energy() -> None:
     # The loop of two bodies on a third closes at once: its impulses are not determined, the energy is.
     spins = {"a": (1, 2, 0.3), "b": (0.5, -1, 0.2), "c": (0, 1, 2)}
