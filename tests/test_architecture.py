@@ -404,6 +404,7 @@ TESTED_IN |= {
         ),
         "motion/test_numerical": (
             "equations/packed motion/products motion/returns motion/run motion/series motion/series_pairs"
+            " motion/series_run"
             " motion/step_sizes motion/vertical_symmetry"
         ),
         "motion/test_stiff": (

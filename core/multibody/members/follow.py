@@ -28,15 +28,12 @@ from core.multibody.members.member_columns import (
     worst,
 )
 from core.multibody.members.plan import Plan, Plans, Setup
-from core.multibody.motion.numerical import (
+from core.multibody.motion.numerical import DOUBLES_SHARE, FINE_MARGIN, FINE_SHARE, GROWTH
+from core.multibody.motion.series_run import (
     CHECK_ORDER,
     CHECK_TOLERANCE,
-    DOUBLES_SHARE,
-    FINE_MARGIN,
     FINE_ORDER,
-    FINE_SHARE,
     FINE_TOLERANCE,
-    GROWTH,
     ORDER,
     REFERENCE_ORDER,
     REFERENCE_TOLERANCE,

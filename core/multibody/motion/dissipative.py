@@ -9,8 +9,9 @@ import numpy as np
 from core.arrays import Floats
 from core.multibody.equations.packed import two_to
 from core.multibody.motion.collocated import collocated, pieces_of_steps
-from core.multibody.motion.numerical import ALIKE_MARGIN, Numerical, integrate
+from core.multibody.motion.numerical import ALIKE_MARGIN, Numerical
 from core.multibody.motion.run import Run
+from core.multibody.motion.series_run import integrate
 from core.multibody.motion.stiff import limiting_decay, rates_of_decay
 from core.multibody.table.table import Table
 
@@ -65,7 +66,7 @@ class Dissipative(Numerical):
         if not found.singular:
             return found
         # Steps have become too short, as they do at a singular place, which series come closer to.
-        self.stiff, self.name, self.why = False, Numerical.name, self._coupled
+        self.stiff, self.name, self.why, self._turns = False, Numerical.name, self._coupled, ""
         return replace(found, singular=False, given_up=True)
 
     def _turns_out_stiff_on_the_way(self, q: Floats, v: Floats, end: float, steps: float) -> bool:

@@ -17,10 +17,11 @@ from core.double_double import dd_add, dd_add_d, dd_div_d, dd_mul_d
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair, units_of
-from core.multibody.motion.numerical import CHECK_TOLERANCE, FINE_TOLERANCE, Numerical
+from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.run import Run, run_by
 from core.multibody.motion.series import DONE, FULL, LOST, SHORTEST
 from core.multibody.motion.series_pairs import moved_pairs
+from core.multibody.motion.series_run import CHECK_TOLERANCE, FINE_TOLERANCE
 from core.multibody.motion.step_sizes import step_size
 from core.multibody.motion.turning_body import TurningBody, cross_matrix, inverse_of, product_of
 from core.multibody.table.table import Table

@@ -22,9 +22,11 @@ import numpy as np
 
 from core.arrays import Floats, Integers
 from core.compiled import kernel
+from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ONE, ZERO, Poly, combined, constant, entry, is_zero, substituted
 from core.multibody.algebra.rank import Elimination
 from core.multibody.equations.packed import Packed
+from core.multibody.motion.run import Run
 from core.multibody.table.table import Row, Table
 
 _KEPT = 0.9
@@ -196,3 +198,30 @@ def first_lost(table: Packed, rows: Integers, starts: Floats, series: Floats) ->
                     return step, way * at
             at, stretch = until, 2.0 * (until - at)
     return len(series), KEPT
+
+
+def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:
+    """Return a run up to the first place where some rows lose their rank, the whole run where they keep it.
+
+    Raises
+    ------
+    AccuracyUnreachable
+        Where it is not known whether they do.
+    """
+    if not len(rows):
+        return run
+    values = run.series if run.series.ndim == 3 else run.series[..., 0]
+    step, time = first_lost(arrays, rows, run.starts, np.ascontiguousarray(values))
+    if time == KEPT:
+        return run
+    if math.isnan(time):
+        raise AccuracyUnreachable(
+            None,
+            np.inf,
+            "whether the connections keep their hold is not known: they come very near to places where they lose it",
+            path=("times",),
+            remedy="ask for earlier times",
+        )
+    starts = run.starts[: step + 2].copy()
+    starts[-1] = starts[step] + [time, 0.0]
+    return Run(starts, run.series[: step + 1], singular=True)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -13,12 +12,12 @@ from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
-from core.multibody.motion.lost_rank import KEPT, first_lost, lines_that_may_depend
+from core.multibody.motion.lost_rank import lines_that_may_depend, up_to_lost_rank
 from core.multibody.motion.motion import Motion, States
 from core.multibody.motion.other_rows import rows_for
-from core.multibody.motion.run import MOST_STEPS, Run, begun, evaluate, run_by
-from core.multibody.motion.series import STUCK, advance, placed
-from core.multibody.motion.series_pairs import advance_pairs
+from core.multibody.motion.run import MOST_STEPS, Run, evaluate
+from core.multibody.motion.series import placed
+from core.multibody.motion.series_run import integrate
 from core.multibody.motion.stiff import MANY, limiting_oscillation, rates_of_decay
 from core.multibody.table.table import Table
 
@@ -40,23 +39,9 @@ DOUBLES_SHARE, FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 ALIKE_MARGIN = 16.0
 """Factor of the difference of two runs in pairs that are of about the same accuracy."""
-GivesUp = Callable[[Floats, Floats, float, float], bool]
 
 FINE_MARGIN, GROWTH = 4.0, 2.0**-50
 """Factor of the difference of two runs in pairs, and share of the errors of doubles, which tell how rounding grows."""
-
-_CHUNK = 2**21
-"""Bytes for the first steps of a run in pairs, twice those of as many in doubles; what is not used is not touched.
-
-Both together are so much less than twice the larger that the C library does not map them anew for every run.
-"""
-# A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
-# motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
-ORDER, TOLERANCE = 24, 2.0**-56
-REFERENCE_ORDER, REFERENCE_TOLERANCE = 28, 2.0**-72
-FINE_ORDER, FINE_TOLERANCE = 32, 2.0**-100
-CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
-"""Of series in doubles, of what they are compared with, and of two runs in pairs whose difference is their error."""
 
 
 @dataclass
@@ -300,86 +285,3 @@ class Numerical(Motion):
         inverse = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
         nearest = np.abs(evaluate(run, np.array([run.end]))[0][0, inverse, 0]).max(initial=0.0)
         return two_to(-self.units.lengths[inverse[0]]) / float(nearest) if nearest > COLLIDED else None
-
-
-def integrate(
-    table: Table,
-    arrays: Packed,
-    units: Units,
-    kind: str,
-    end: float,
-    since: Run | None = None,
-    gives_up: GivesUp | None = None,
-) -> Run:
-    """Take steps to a time in the units of the arrays, from the start, or from where the last step of a run starts.
-
-    Parameters
-    ----------
-    gives_up : callable, optional
-        Called with places, rates, the time to be reached and the steps that this takes, when the arrays are full:
-        whether another method is better.
-
-    Raises
-    ------
-    BudgetExceeded
-        Where more steps would be needed than one part may take.
-    AccuracyUnreachable
-        Where the motion leaves the range of doubles, or a formula does not say how it goes on.
-    """
-    order, tolerance = {
-        "doubles": (ORDER, TOLERANCE),
-        "reference": (REFERENCE_ORDER, REFERENCE_TOLERANCE),
-        "fine": (FINE_ORDER, FINE_TOLERANCE),
-        "check": (CHECK_ORDER, CHECK_TOLERANCE),
-    }[kind]
-    (q, v), clock, before = begun(table, units, since)
-    shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
-    start = (q[:, 0], v[:, 0]) if kind == "doubles" else (q, v)
-    take = advance if kind == "doubles" else advance_pairs
-
-    def steps(clock: Floats, starts: Floats, series: Floats) -> tuple[int, int]:
-        ended, count = take(arrays, q, v, clock, end, tolerance, starts, series)
-        if ended == STUCK:
-            time = clock[0] * two_to(units.time)
-            raise AccuracyUnreachable(
-                None,
-                np.inf,
-                f"a formula does not say how the motion goes on from {time:.10g} s: either side of the zero on which "
-                "it depends leads back to it, or it begins with a power of time beyond those of the series",
-                path=("times",),
-                remedy="ask for earlier times, or describe friction that holds what is at rest by a contact",
-            )
-        return ended, count
-
-    def stops(needed: float) -> bool:
-        return gives_up is not None and gives_up(q, v, end, needed)
-
-    many = max(16, _CHUNK // (16 * len(q) * (order + 1)))
-    return run_by(steps, end, start, shape, many, clock, before, stops)
-
-
-def up_to_lost_rank(arrays: Packed, rows: Integers, run: Run) -> Run:
-    """Return a run up to the first place where some rows lose their rank, the whole run where they keep it.
-
-    Raises
-    ------
-    AccuracyUnreachable
-        Where it is not known whether they do.
-    """
-    if not len(rows):
-        return run
-    values = run.series if run.series.ndim == 3 else run.series[..., 0]
-    step, time = first_lost(arrays, rows, run.starts, np.ascontiguousarray(values))
-    if time == KEPT:
-        return run
-    if math.isnan(time):
-        raise AccuracyUnreachable(
-            None,
-            np.inf,
-            "whether the connections keep their hold is not known: they come very near to places where they lose it",
-            path=("times",),
-            remedy="ask for earlier times",
-        )
-    starts = run.starts[: step + 2].copy()
-    starts[-1] = starts[step] + [time, 0.0]
-    return Run(starts, run.series[: step + 1], singular=True)

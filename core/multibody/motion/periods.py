@@ -21,18 +21,12 @@ from core.compiled import kernel
 from core.double_double import Pair, dd_add, dd_add_d, dd_mul, dd_mul_d
 from core.multibody.algebra.polynomials import BITS, Ball, is_zero
 from core.multibody.equations.packed import Units, packed, pair, state, two_to, units_of
-from core.multibody.motion.lost_rank import lines_that_may_depend
+from core.multibody.motion.lost_rank import lines_that_may_depend, up_to_lost_rank
 from core.multibody.motion.motion import Motion, States
-from core.multibody.motion.numerical import (
-    CHECK_ORDER,
-    CHECK_TOLERANCE,
-    FINE_ORDER,
-    FINE_TOLERANCE,
-    up_to_lost_rank,
-)
 from core.multibody.motion.returns import PLACES, POWER, RATES, Passage, Section, added, distance, followed
 from core.multibody.motion.run import Run
 from core.multibody.motion.series_pairs import moved_pairs
+from core.multibody.motion.series_run import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.table.table import Table
 
 CLOSED = 1e-20

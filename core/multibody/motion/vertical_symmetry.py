@@ -19,9 +19,9 @@ from core.multibody.algebra.directions import polar_angle
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.equations.packed import packed, pair, state, two_to, units_of
 from core.multibody.motion.motion import Motion, States
-from core.multibody.motion.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.motion.periods import UNCERTAIN, Periodic
 from core.multibody.motion.returns import RATES, Passage, Section, distance, followed
+from core.multibody.motion.series_run import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.table.table import Table
 
 

@@ -30,9 +30,10 @@ from core.multibody.equations.onsets_of_slip import rests
 from core.multibody.equations.packed import Packed, Units, exponent, packed, pair, two_to, units_of
 from core.multibody.motion.modelling import Modelled, Piece
 from core.multibody.motion.motion import Motion, States
-from core.multibody.motion.numerical import SINGULAR_TIME_ERROR, integrate
+from core.multibody.motion.numerical import SINGULAR_TIME_ERROR
 from core.multibody.motion.run import MOST_STEPS, Run, evaluate
 from core.multibody.motion.series_pairs import multipliers_pairs
+from core.multibody.motion.series_run import integrate
 from core.multibody.motion.whole import Whole
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.search.bands import SAFETY_FACTOR

@@ -191,7 +191,7 @@ def test_only_lines_of_loops_may_come_to_depend(scene: Json, count: int) -> None
 def test_what_comes_too_near_for_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     (_, motion), *_ = model_of(CRANKS).whole.parts
     assert isinstance(motion, Numerical)
-    monkeypatch.setattr("core.multibody.motion.numerical.first_lost", lambda *_: (0, UNKNOWN))
+    monkeypatch.setattr("core.multibody.motion.lost_rank.first_lost", lambda *_: (0, UNKNOWN))
     with pytest.raises(AccuracyUnreachable, match="keep their hold"):
         motion.run("doubles", 1.0)
 

@@ -155,7 +155,7 @@ def test_steps_that_a_search_takes_grow_with_its_length() -> None:
 
 def test_a_grown_run_has_no_more_steps_than_any(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("core.multibody.motion.run.MOST_STEPS", 40)
-    monkeypatch.setattr("core.multibody.motion.numerical._CHUNK", 2**14)
+    monkeypatch.setattr("core.multibody.motion.series_run._CHUNK", 2**14)
     (one,) = numerical(points((1, 2), ("0.7", "-1"), (1, 3)))
     ends = iter(np.linspace(0.0, 40.0, 80).tolist())
     with pytest.raises(BudgetExceeded, match="steps"):
