@@ -74,11 +74,18 @@ class HeldBytes:
         """Return whether a client may hold another answer: any where it has none, others within its share."""
         return client not in self._answers or self._answers[client] + count <= self._own
 
+    @contextmanager
+    def reserved(self, client: Hashable, count: int) -> Iterator[None]:
+        """Count the bytes of an answer before it is made, or refuse it where its client has no room (429)."""
+        if not self.may_answer(client, count):
+            raise self._share_taken()
+        with self.answering(client, count):
+            yield
+
     def require_share(self, client: Hashable, headers: Sequence[tuple[str, str]] = ()) -> None:
         """Refuse more of a client that holds more than its share (429)."""
         if self._of[client] > self._own:
-            detail = f"requests and unread answers of this client take more than {self._own} bytes, its share"
-            raise Refusal("too-busy", f"{detail} of the limit max_held_bytes", headers=headers, retry_after=1.0)
+            raise self._share_taken(headers)
 
     def require_room(self, client: Hashable, *, close: bool = False) -> None:
         """Refuse more of a client (429); the connection is closed if it is to `close`."""
@@ -87,3 +94,7 @@ class HeldBytes:
         if self.total > self._most:
             detail = f"requests and unread answers take more than {self._most} bytes, the limit max_held_bytes"
             raise Refusal("too-busy", detail, headers=headers, retry_after=1.0)
+
+    def _share_taken(self, headers: Sequence[tuple[str, str]] = ()) -> Refusal:
+        detail = f"requests and unread answers of this client take more than {self._own} bytes, its share"
+        return Refusal("too-busy", f"{detail} of the limit max_held_bytes", headers=headers, retry_after=1.0)

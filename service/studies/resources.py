@@ -29,6 +29,7 @@ from service.studies.states import JSON_TYPE, REPRESENTATIONS, signed, state_of
 from service.studies.store import ORDERS, identity_of, storage_unavailable
 from service.studies.study import DISMISSED, SUCCESSFUL, Owner, Quotas, Study
 from service.studies.supervisor import Supervisor
+from service.studies.unfinished_study import LARGEST_CHUNK
 
 MOST_LISTED = 200
 """Studies of a page of the list."""
@@ -55,6 +56,9 @@ LIST_PARAMETERS = (
     _in_query("count", f"Of studies, {MOST_LISTED} if left out.", type="integer", minimum=1, maximum=MOST_LISTED),
     _in_query("sort", "By which time, with a minus sign the latest first; -created if left out.", enum=[*ORDERS]),
 )
+
+BYTES_OF_A_NUMBER = 64
+"""Of a page of results while it is made: 32 as an object in a list, 25 as text."""
 
 EVENTS_EVERY = 0.25
 """Seconds between two looks at a study that is watched."""
@@ -210,8 +214,7 @@ class Studies:
             found = await self._in_thread(lambda: Results(study, self._store, self._supervisor.files()))
             if study.whole:
                 refuse_parameters(parameters_of(context.scope), "must be left out: the result is one answer")
-                pieces = _stored(found.answer())
-                await context.stream_made_elsewhere(pieces, media.encode(), self._settings.stalled_seconds)
+                await self._stream(context, study, found.answer(), media)
             elif media == JSON_TYPE:
                 await self._page(context, study, found)
             else:
@@ -223,7 +226,7 @@ class Studies:
                     comma_separated.MEDIA_TYPE: lambda: comma_separated.rows(found),
                     SVG: lambda: figure(found),
                 }[media]()
-                await context.stream_made_elsewhere(_stored(pieces), media.encode(), self._settings.stalled_seconds)
+                await self._stream(context, study, pieces, media)
         except ImportError as missing:
             detail = f"this service is installed without {missing.name}, which writes {media}"
             raise Refusal("not-acceptable", detail) from None
@@ -231,6 +234,12 @@ class Studies:
             await run_in_daemon_thread(self._supervisor.ensure)
             detail = "some of the results were damaged and are being computed again"
             raise Refusal("results-not-ready", detail, retry_after=2.0) from None
+
+    async def _stream(self, context: RequestContext, study: Study, pieces: Iterator[bytes], media: str) -> None:
+        # A stretch of members is in memory at a time; of one answer, all of it.
+        size = study.plan["bytes"] * min(study.count, LARGEST_CHUNK) // study.count
+        with self._compute.held.reserved(context.client, size):
+            await context.stream_made_elsewhere(_stored(pieces), media.encode(), self._settings.stalled_seconds)
 
     async def _page(self, context: RequestContext, study: Study, found: Results) -> None:
         query = _query(context, PAGE_PARAMETERS)
@@ -251,7 +260,9 @@ class Studies:
             after = f"{PATH}/{study.id}/results?start={stop}&count={size}"
             return signed(page | {"next": after if stop < study.count else None})
 
-        await self._send(context, await self._in_thread(made))
+        columns = len(study.plan["inputs"]) + len(study.plan["figures"])
+        with self._compute.held.reserved(context.client, (stop - start) * columns * BYTES_OF_A_NUMBER):
+            await self._send(context, await self._in_thread(made))
 
     async def events(self, context: RequestContext) -> None:
         """Send the state of a study whenever it has changed, until it has ended."""

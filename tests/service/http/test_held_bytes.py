@@ -36,7 +36,11 @@ def test_a_client_may_have_any_answer_and_others_within_its_share() -> None:
         assert not held.may_answer("reads", 21)
         assert held.may_answer("other", 200)
         held.require_share("other")
+        with pytest.raises(Refusal, match="its share of the limit max_held_bytes"), held.reserved("reads", 21):
+            pass
+        with held.reserved("reads", 20):
+            assert held.total == 90
         with pytest.raises(Refusal, match="its share of the limit max_held_bytes"):
             held.require_share("reads")
-    assert freed == [40]
+    assert freed == [70, 40]
     held.require_share("reads")

@@ -475,6 +475,19 @@ async def test_one_address_has_a_share_of_studies_and_of_event_streams(
         assert "event: dismissed" in (await client.get(f"{place}/events")).text
 
 
+@pytest.mark.parametrize("media", ["application/json", "application/x-npz", "text/csv"])
+async def test_results_count_among_the_answers_that_their_client_reads(
+    desk_on: Desks, in_process: str, tmp_path: Path, media: str
+) -> None:
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        held = client._transport.app.compute.held
+        for address, status in (("127.0.0.1", 429), ("192.0.2.1", 200)):
+            with held.answering(address, 200_000_000):
+                answer = await client.get(f"{place}/results", headers={"accept": media})
+                assert answer.status_code == status
+        assert held.total == 0
+
+
 def test_one_client_has_half_of_the_bytes(tmp_path: Path) -> None:
     store, plan, most = Store(tmp_path), {"count": 1, "bytes": 400}, Quotas(9, 9, 1000)
     store.create(Owner("", "192.0.2.1"), b"{}", plan, most)
