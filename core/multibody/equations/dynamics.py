@@ -274,7 +274,7 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball], round
         if rest:
             if not (rounding and is_share_of([*rest.values()], rounding, [*line.values()]) and abs(left) <= known):
                 elimination.determine(rest, left)
-        elif not is_zero(left):
+        elif not is_zero(left) and not abs(left) <= known:
             if len(table.independent_rows()) < len(table.rows):
                 raise InvalidParameter(
                     ("connections",),

@@ -10,9 +10,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from core.balls import distance_bound
+from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero
+from core.multibody.contacts.contact_responses import rate_along
 from core.multibody.contacts.impulsive_rates import Struck, struck
-from core.multibody.equations.assembly import assemble_places
+from core.multibody.equations.assembly import CLOSE_RATE, assemble_places
 from core.multibody.equations.dynamics import kinetic
 from core.multibody.equations.packed import nearest
 from core.multibody.phases.schedule import Entry
@@ -77,6 +79,8 @@ def changed(base: Described, acting: Acting, due: Sequence[Entry], tracks: Track
         replace(track, q=table.q, v=struck(table, pushes.values()).v)
         for track, table in zip(tracks.each, tables, strict=True)
     ]
+    for track, table in zip(each, tables, strict=True):
+        _require_kept(table, track.v, base.paths)
     wide = tables[0] if tracks.exact else _widened(tables[0], tracks)
     events, works = _recorded(bases[0], wide, due, pushes, tracks)
     return Change(bases[0], fresh[0], each, events, works, begin | end)
@@ -114,6 +118,17 @@ def _begun(base: Described, track: Track, begin: frozenset[str], paths: Mapping[
     if begin:
         assemble_places(table, base.paths)
     return table
+
+
+def _require_kept(table: Table, v: Sequence[Ball], paths: Mapping[str, Path]) -> None:
+    """Raise `InvalidParameter` where rates keep some rows and not what others hold beside these."""
+    fastest = max((abs(float(x.mid())) for x in v), default=0.0)
+    for row in table.rows:
+        line = row.line(table.q)
+        left, size = row.rate - rate_along(line, v), sum(abs(float(x.mid())) for x in line.values()) * fastest
+        if not abs(float(left.mid())) <= CLOSE_RATE * size:
+            rule = "agree with the rates that other connections hold"
+            raise InvalidParameter(paths.get(row.name, ()), rule, remedy="end what holds another rate before")
 
 
 def _widened(table: Table, tracks: Tracks) -> Table:

@@ -882,6 +882,43 @@ def test_a_field_ends_for_all_bodies_at_once(until: Any) -> None:
     np.testing.assert_allclose(column(found, "a.position"), [[1.375, 0]], rtol=1e-14)
 
 
+def test_motors_of_different_rates_do_not_hold_one_wheel() -> None:
+    wheel = {"wheel": {"mass": 1, "inertia": 1, "at": [0, 0]}}
+    motors = [
+        {"kind": "motor", "name": "slow", "a": "wheel", "rate": 2, "from": 0.25},
+        {"kind": "motor", "name": "fast", "a": "wheel", "rate": "1 + t", "from": 0.5},
+    ]
+    found = solved([0.3, 1.0], ("trajectory",), bodies=wheel, connections=motors)
+    assert found.problem is not None
+    assert found.problem.code == "cannot-begin"
+    assert "agree with the rates that other connections hold" in found.problem.explanation
+    motors[0]["until"] = 0.5
+    found = solved([1.0], ("trajectory",), bodies=wheel, connections=motors)
+    assert column(found, "wheel.angle")[0] == pytest.approx(0.5 + 0.5 + (1 - 0.25) / 2, rel=1e-14)
+
+
+def test_forces_are_known_where_a_damper_has_turned_out_to_lie_level() -> None:
+    # Two particles keep one height: the damper between them has no part across, but what is rounded of that.
+    bodies = {
+        "a": {"mass": 2, "at": [0, 1], "inertia": "1/7", "angular_velocity": 1, "places": {"p": [0.3, 0]}},
+        "b": {"mass": "1/3", "at": [1.2, 1], "velocity": [1, 1]},
+        "c": {"mass": "1/3", "at": [2.5, 1], "velocity": [0, 1]},
+    }
+    never = {"when": {"quantity": "a.position.y", "equals": 50}}
+    found = solved(
+        [0.6, 0.8],
+        ("trajectory",),
+        bodies=bodies,
+        connections=[
+            {"kind": "damper", "name": "damper", "a": "c", "b": "b", "coefficient": 0.5, "until": never},
+            {"kind": "inverse-square", "name": "pull", "a": "a.p", "b": "b", "strength": 0.5, "from": "2/3"},
+        ],
+    )
+    # r' = 2 c/m (1 - r) for the rate at which they approach, with the reduced mass 1/6.
+    assert column(found, "b.velocity")[0, 0] == pytest.approx(0.5 + 0.5 * np.exp(-0.5 * 6 * 0.6), rel=1e-13)
+    assert happened(found) == [("begin", "pull")]
+
+
 def test_what_shares_its_impulses_with_others_takes_energy() -> None:
     # The loop of two bodies on a third closes at once: its impulses are not determined, the energy is.
     spins = {"a": (1, 2, 0.3), "b": (0.5, -1, 0.2), "c": (0, 1, 2)}
