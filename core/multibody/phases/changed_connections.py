@@ -122,7 +122,8 @@ def _begun(base: Described, track: Track, begin: frozenset[str], paths: Mapping[
 
 def _require_kept(table: Table, v: Sequence[Ball], paths: Mapping[str, Path]) -> None:
     """Raise `InvalidParameter` where rates keep some rows and not what others hold beside these."""
-    fastest = max((abs(float(x.mid())) for x in v), default=0.0)
+    # What has been stopped is at rest as far as it is known beside its rates before.
+    fastest = max((abs(float(x.mid())) for x in (*table.v, *v)), default=0.0)
     for row in table.rows:
         line = row.line(table.q)
         left, size = row.rate - rate_along(line, v), sum(abs(float(x.mid())) for x in line.values()) * fastest
