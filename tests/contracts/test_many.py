@@ -139,6 +139,24 @@ def test_many_have_the_bits_of_each_alone(path: str, k: int) -> None:
     assert np.isfinite(many.figures).any(axis=1).any()
 
 
+def test_a_fault_in_answering_many_is_logged_and_costs_no_result(caplog: pytest.LogCaptureFixture) -> None:
+    path = "/v1/rotation/precession"
+    study = {
+        "question": {"path": path, "request": REQUESTS[path]},
+        "quantities": FIGURES[path],
+        "vary": RANGES[path][2],
+    }
+
+    def faulty(request: Any, columns: Columns, figures: Sequence[Path]) -> ManyFigures | None:
+        raise ZeroDivisionError
+
+    about = studying((replace(ROUTES[path], many=faulty),))
+    asked = Reader(about.question, Limits()).read(json.dumps(study).encode())
+    found = about.members(asked, Budget()).block(0, 20)
+    assert "could not be answered together" in caplog.text
+    assert found.figures.tobytes() == block(replace(ROUTES[path], many=None), study).figures[:20].tobytes()
+
+
 def test_what_is_not_answered_at_once_is_answered_one_by_one() -> None:
     """Other bodies, a measurement, and figures that are no numbers of the precession."""
     route = ROUTES["/v1/rotation/precession"]

@@ -17,6 +17,7 @@ from core.arrays import Floats
 from core.assessment.figures import steps_of, value_at
 from core.assessment.propagation import changed
 from core.errors import MechanicsError, Path
+from service.observability.logs import LOG
 from service.problems import code_of
 from service.routes.assessments.route_source import Refused, RouteSource
 from service.routing import Answer, Columns
@@ -213,7 +214,12 @@ class Members:
         columns: Columns = {
             place: self._column(k, numbers[:, k]) for k, places in enumerate(self._places) for place in places
         }
-        return many(self._request, columns, self._figures)
+        try:
+            return many(self._request, columns, self._figures)
+        except Exception:
+            # What fails for many together is a fault of the service, which each of them may do without.
+            LOG.exception("members could not be answered together")
+            return None
 
     def _column(self, k: int, numbers: Floats) -> Floats:
         values = self.design.inputs[k].values
