@@ -278,7 +278,7 @@ def _group(
     if len(given) == len(group) > 1:
         return _in_turn(unilateral, _by_order(unilateral, given), rates, found)
     if simultaneous == "in order" and len(group) > 1:
-        others = [[i] for i in group if unilateral[i].order is None]
+        others = [[i] for i in sorted(group, key=lambda i: unilateral[i].listed) if unilateral[i].order is None]
         return _in_turn(unilateral, [*_by_order(unilateral, given), *others], rates, found)
     if settled is not None and all(unilateral[i].law == "newton" for i in group):
         known = [settled.changes[i] for i in group if i in settled.changes]

@@ -354,7 +354,7 @@ class _Run:
         """Add the events of an impact from a state, each with the energy that its connection takes."""
         group, count = self.bounced
         self.bounced = tuple(hit), count + 1 if group == tuple(hit) else 1
-        for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
+        for i in sorted(outcome.impulses, key=lambda i: (i not in hit, outcome.unilateral[i].listed, i)):
             one, balls = outcome.unilateral[i], outcome.components(i)
             impulses = {name: nearest(ball) for name, ball in balls.items()}
             time, late = nearest(self.tracks.time), self.tracks.late()

@@ -193,6 +193,8 @@ class Unilateral:
         Whether it meets the ends of edges: where two corners meet, that of the first shape takes the force.
     opposite : str or None
         In a guide without play the measure of the other side, whose gap is this one's below zero: one of both presses.
+    listed : int
+        Number of its connection in the description, by which impacts happen in order.
     """
 
     name: str
@@ -215,6 +217,7 @@ class Unilateral:
     region: tuple[Poly, ...] = ()
     first: bool = True
     opposite: str | None = None
+    listed: int = 0
 
     @property
     def slips(self) -> list[LinearForm]:

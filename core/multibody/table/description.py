@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.errors import Path
 from core.multibody.algebra.polynomials import Ball, Poly, is_zero
@@ -115,20 +115,27 @@ def described(
         if connection.timed:
             continue
         with faults.part():
-            first = len(measures.table.rows)
+            first, before = len(measures.table.rows), len(measures.unilateral)
             add_rows(connection, measures, name, ("connections", i))
+            _number(measures, before, i)
             driven = list(driven_works(measures, name, first))
             measures.works.extend(driven)
             measures.conservative = measures.conservative and not driven
     for name, (i, connection) in timed:
         with faults.part():
-            acts, begun = i in measures.begun, measures.begun.get(i)
+            acts, begun, before = i in measures.begun, measures.begun.get(i), len(measures.unilateral)
             add_timed(connection, measures, name, ("connections", i), begun, acts=acts)
+            _number(measures, before, i)
     faults.raised()
     balance_massless_places(measures)
     if "gravity" not in paths:
         measures.works.extend(_weight(measures))
     return Described(scene, measures, paths)
+
+
+def _number(measures: Measures, first: int, number: int) -> None:
+    """Give the number of a connection to the measures from one on: those of what is timed come last."""
+    measures.unilateral[first:] = [replace(one, listed=number) for one in measures.unilateral[first:]]
 
 
 def _weight(measures: Measures) -> list[WorkTerm]:

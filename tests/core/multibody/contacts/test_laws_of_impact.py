@@ -153,3 +153,24 @@ def test_what_slides_on_while_something_else_bounces_takes_no_part() -> None:
     answer = solve_scene(read(scene), [0.0, 0.3])
     assert answer.problem is None
     assert [event.kind for event in answer.events] == ["touch"]
+
+
+@pytest.mark.parametrize("until", [None, 100])
+def test_contacts_act_as_they_are_listed_whether_or_not_they_end(until: float | None) -> None:
+    # A level plank falls on both its ends by 2 m/s. An impulse changes the rate of its end by 4 of it, of the other by
+    # -2: the left one stops by 1/2, the right one turns back from 3 by 3/2, and the left one stops again by 3/4.
+    scene: dict[str, Any] = {
+        "gravity": [0, -10],
+        "simultaneous": "in order",
+        "bodies": {
+            "plank": {"mass": 1, "inertia": "1/3", "at": [0, 0.2], "places": {"l": [-1, 0], "r": [1, 0]}},
+        },
+        "connections": [
+            {"kind": "contact", "name": "left", "place": "plank.l", "on": {"at": [0, 0]}, "until": until},
+            {"kind": "contact", "name": "right", "place": "plank.r", "on": {"at": [0, 0]}, "restitution": 1},
+        ],
+    }
+    found = solve_scene(read(scene), [0.201])
+    struck = {event.name: event.impulses["normal"] for event in found.events if event.kind == "touch"}
+    assert list(struck) == ["left", "right"]
+    assert [*struck.values()] == pytest.approx([5 / 4, 3 / 2], rel=1e-12)
