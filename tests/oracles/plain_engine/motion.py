@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from core.multibody.language.scene import Scene
+from tests.oracles.plain_engine.combinations import LEAST
 from tests.oracles.plain_engine.coordinates import Floats, State
 from tests.oracles.plain_engine.decisions import decide
 from tests.oracles.plain_engine.impacts import impact
@@ -177,7 +178,7 @@ class _Run:
         self.fastest = max(self.fastest, float(np.abs(self.state.rates).max(initial=0.0)))
         for _ in range(AT_ONCE):
             _, rates = self.mechanism.gap_rates(self.state)
-            hit = [i for i in self.touching if rates[i] < -APPROACHES * max(self.fastest, 1e-9)]
+            hit = [i for i in self.touching if rates[i] < -APPROACHES * max(self.fastest, LEAST)]
             if not hit:
                 return
             settling = {i: left for i in hit if (left := self._settling(i, rates)) is not None}
