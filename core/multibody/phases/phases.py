@@ -501,9 +501,11 @@ class _Run:
             if crossings[0].watch is watch:
                 entry.passages, entry.side = entry.passages + 1, -entry.side
         first, tracks = crossings[0], self.tracks
-        tracks.follow_scales(float(first.time), phase.tracks[0].q, first.q, phase.models[0].whole.acceleration)
         before = phase.tracks if len(phase.tracks) == len(crossings) else phase.tracks * len(crossings)
         tracks.each = [t.after(x.time, phase.still, x.q, x.v) for t, x in zip(before, crossings, strict=True)]
+        # Whether what rests has moved is seen from places that are rounded or not, as they are at the end.
+        acceleration = phase.models[0].whole.acceleration
+        tracks.follow_scales(float(first.time), phase.tracks[0].q, tracks.first.q, acceleration)
         wide = tracks.exact and tracks.width() > EXACT
         if wide and not self.last:
             raise _TooWide

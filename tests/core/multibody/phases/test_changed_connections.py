@@ -941,3 +941,23 @@ def test_what_shares_its_impulses_with_others_takes_energy() -> None:
     assert not found.events[-1].impulses
     assert found.events[-1].energy_loss > 1e-3
     assert column(found, "energy.kinetic")[0] == pytest.approx(energy - lost, rel=1e-13)
+
+
+def test_wheels_turn_on_beside_what_rests_when_a_force_begins() -> None:
+    found = solved(
+        [0.1, 0.2],
+        ("trajectory",),
+        bodies={
+            "g": {"mass": 1, "inertia": "0.02", "radius": 0.2, "at": [0, 0], "angular_velocity": 2},
+            "h": {"mass": 1, "inertia": "0.005", "radius": 0.1, "at": [0.3, 0]},
+        },
+        connections=[
+            {"kind": "pin", "name": "axle-g", "a": "g", "b": [0, 0]},
+            {"kind": "pin", "name": "axle-h", "a": "h", "b": [0.3, 0]},
+            {"kind": "rolling", "name": "mesh", "a": "g", "b": "h"},
+            {"kind": "torsion-spring", "name": "twist", "a": "h", "stiffness": 1},
+            {"kind": "force", "name": "push", "place": "g", "force": ["1", "0"], "from": 0.122},
+        ],
+    )
+    # (0.02 + 4 x 0.005) phi'' = -4 phi: ten radians a second.
+    np.testing.assert_allclose(column(found, "g.angle"), [0.2 * np.sin(1), 0.2 * np.sin(2)], rtol=1e-14)
