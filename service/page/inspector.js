@@ -2,7 +2,7 @@
 import { make } from "./dom.js";
 import { mark } from "./number_fields.js";
 import { shownNumber, typedNumber } from "./number_text.js";
-import { BODY_FIELDS, CONNECTION_FIELDS, FACE_FIELDS, ON_FACE, SCENE_FIELDS, TOUCH_FIELDS } from "./part_fields.js";
+import { BODY_FIELDS, CONNECTION_FIELDS, FACE_FIELDS, ON_FACE, SCENE_FIELDS, SPAN_FIELDS, TOUCH_FIELDS, WITHOUT_SPAN } from "./part_fields.js";
 import { inline, pointerTo } from "./scene_text.js";
 import { placesOf } from "./scene_parts.js";
 import { described4, withCorners } from "./handles.js";
@@ -86,7 +86,7 @@ export class Inspector {
   }
 
   ofConnection({ id, name, pointer, onFace }) {
-    const c = this.doc.scene.at(pointer), fields = CONNECTION_FIELDS[c.kind] ?? [];
+    const c = this.doc.scene.at(pointer), fields = [...(CONNECTION_FIELDS[c.kind] ?? []), ...(WITHOUT_SPAN.includes(c.kind) ? [] : SPAN_FIELDS)];
     const present = fields.filter((f) => f.type !== "place" || c[f.name] !== undefined).filter((f) => f.type !== "sides" || c.sides);
     const kind = onFace && typeof c.place === "string" ? [this.choice({ words: "On the face it", options: ON_FACE }, `${pointer}/kind`)] : [make("p", { className: "soft", textContent: c.kind.replaceAll("-", " ") })];
     return [this.name(id, name), ...kind, ...present.map((f) => this.field(f, pointer))];

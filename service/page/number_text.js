@@ -11,6 +11,16 @@ export function shownNumber(value, source) {
   return JSON.stringify(value);
 }
 
+/** Whether a text is JSON. */
+function isJson(text) {
+  try {
+    JSON.parse(text);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
 const DECIMAL = /^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$/;
 
 /** A decimal as JSON has it. */
@@ -25,6 +35,7 @@ export function typedNumber(text, { names = {}, angle = false, open = false } = 
   if (DECIMAL.test(typed)) return { source: asJson(typed) };
   const turned = /^\(?(.+?)\)?\s*(?:°|deg|degrees)$/.exec(typed);
   if (angle && turned) return { source: `{"degrees": ${DECIMAL.test(turned[1].trim()) ? asJson(turned[1].trim()) : JSON.stringify(turned[1].trim())}}` };
+  if (open && typed.startsWith("{")) return isJson(typed) ? { source: typed } : { problem: "This is no JSON: a brace or a quotation mark is missing" };
   if (/^[-+]?\d+,\d+$/.test(typed)) return { problem: `Decimals have a point here: ${typed.replace(",", ".")}` };
   if (!open && !Number.isFinite(formula(typed, names))) return { problem: "A number or a formula such as sqrt(2)/2, please" };
   return { source: JSON.stringify(typed) };

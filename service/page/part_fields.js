@@ -57,6 +57,12 @@ export const CONNECTION_FIELDS = {
   impulse: [place("place", "On"), place("body", "Or turns"), vector("impulse", "Impulse", "N s"), number("at", "At", "s", { optional: true, open: true })],
 };
 
+/** Between which a connection acts: times, or occasions as the description has them. */
+export const SPAN_FIELDS = [number("from", "Acts from", "s", { optional: true, open: true }), number("until", "Acts until", "s", { optional: true, open: true })];
+
+/** What acts all the time, or at one time. */
+export const WITHOUT_SPAN = ["spinning-frame", "chain", "impulse"];
+
 /** Of a face: its own, and those of everything that touches it. */
 export const FACE_FIELDS = [
   vector("at", "Point on it", "m"),

@@ -8,6 +8,8 @@ from pathlib import Path
 import httpx
 import pytest
 
+from core.multibody.language.connection import TimedConnection
+from core.multibody.language.kinds import KINDS as CONNECTIONS
 from service.app import Service
 from service.routes.pages import FOLDER
 from tests.service.conftest import client_of, inline_toys
@@ -103,6 +105,12 @@ def test_scripts_import_what_the_vendored_build_exports() -> None:
             imported |= set(names.replace(" ", "").replace("\n", "").strip(",").split(","))
     assert imported <= exported
     assert len(imported) > 15
+
+
+def test_the_inspector_has_spans_of_what_begins_and_ends() -> None:
+    line = next(line for line in (FOLDER / "part_fields.js").read_text().splitlines() if "WITHOUT_SPAN =" in line)
+    always = {name for name, kind in CONNECTIONS.items() if not issubclass(kind, TimedConnection)}
+    assert set(re.findall('"([a-z-]+)"', line)) == always
 
 
 def test_everything_vendored_has_its_licence_and_an_exact_version() -> None:
