@@ -9,6 +9,7 @@ import pytest
 
 from tests.drawn import sampled
 from tests.oracles.plain_engine.comparison import comparing
+from tests.oracles.plain_engine.comparison.changing_scenes import changing_scene_of
 from tests.oracles.plain_engine.comparison.comparing import compared
 from tests.oracles.plain_engine.comparison.minimal import minimal
 from tests.oracles.plain_engine.comparison.run import classes_of
@@ -34,6 +35,8 @@ SEEDS = (
 )
 # fmt: on
 """Seeds whose scenes take the plain engine least time, so that 200 of them take less than 40 s of one core."""
+CHANGING = range(5400050, 5400090)
+"""Seeds of scenes in which connections begin and end, and blows fall."""
 KNOWN: dict[int, str] = {}
 """Seeds of scenes about which the two are known to disagree, and in what: remove one with what repairs it."""
 
@@ -46,6 +49,13 @@ def marked(seed: int) -> Any:
 @pytest.mark.parametrize("seed", [marked(seed) for seed in (*sampled(SEEDS, __name__), *KNOWN)])
 def test_the_two_engines_agree(seed: int) -> None:
     verdict = compared(*scene_of(seed))
+    assert classes_of(verdict) == ""
+    assert verdict.compared > 0
+
+
+@pytest.mark.parametrize("seed", sampled(CHANGING, f"{__name__}.changing"))
+def test_the_two_engines_agree_where_connections_begin_and_end(seed: int) -> None:
+    verdict = compared(*changing_scene_of(seed))
     assert classes_of(verdict) == ""
     assert verdict.compared > 0
 
