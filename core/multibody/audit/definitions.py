@@ -24,7 +24,7 @@ from core.multibody.audit import (
 from core.multibody.audit.bodies import Path, Reader, RigidBody
 from core.multibody.audit.definition import Definition
 from core.multibody.audit.definition_of import definition_of
-from core.multibody.audit.placement import LARGEST, LEAST, Placement, Undefined
+from core.multibody.audit.placement import LARGEST, LEAST, Place, Placement, Undefined
 from core.multibody.language.scene import Scene
 
 FORMS = (
@@ -55,6 +55,8 @@ class Description:
     start : mapping of str to Pose
     within : bool
         Whether the powers of all its numbers are doubles.
+    elsewhere : tuple of Place
+        Those that connections name which do not act now: by these, too, a motion shows of a top its axis alone.
     """
 
     dimension: int
@@ -64,6 +66,7 @@ class Description:
     undefined: dict[str, str]
     start: Placement
     within: bool = True
+    elsewhere: tuple[Place, ...] = ()
 
     @cached_property
     def places(self) -> float:

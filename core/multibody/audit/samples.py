@@ -298,7 +298,8 @@ def axis_of_top(body: RigidBody, description: Description) -> int:
     """Return the body axis about which a body is symmetric, and on which its places are that connections use."""
     assert body.inertia is not None, "a top has moments"
     moments = np.diag(body.inertia)
-    used = {place.offset for one in description.connections for place in one.places if place.body == body.name}
+    places = [*description.elsewhere, *(place for one in description.connections for place in one.places)]
+    used = {place.offset for place in places if place.body == body.name}
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
         if moments[i] == moments[j] and all(offset[i] == 0.0 == offset[j] for offset in used):

@@ -67,6 +67,7 @@ def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator
         return
     acting = {name for name, one in zip(scene.names(), scene.connections, strict=True) if one.starts}
     numbers = {name: number for name, (number, _) in zip(scene.names(), scene.numbered(), strict=True)}
+    elsewhere = tuple(place for one in description_of(scene, answered=answered).connections for place in one.places)
     changes = [event for event in answer.events if event.kind in ("begin", "end")]
     times = sorted({event.time for event in changes})
     ends = [*times, inf]
@@ -81,7 +82,7 @@ def stages_of(scene: Scene, answer: SceneSolution, sampler: Sampler) -> Iterator
         present = acting | _ended_after_impulses(answer, begin)
         known = {name: own for name, own in known.items() if name in present}
         part = part_of(scene, {numbers[name] for name in present})
-        found = description_of(part, answered=answered, bodies=bodies, begun=begun)
+        found = replace(description_of(part, answered=answered, bodies=bodies, begun=begun), elsewhere=elsewhere)
         begun = {numbers[name]: begun.get(numbers[name], found.start) for name in present}
         members = {name: tuple(one for one in found.connections if one.name.split(".")[0] == name) for name in present}
         known = {**members, **known}

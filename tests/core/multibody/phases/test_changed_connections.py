@@ -943,6 +943,23 @@ def test_what_shares_its_impulses_with_others_takes_energy() -> None:
     assert column(found, "energy.kinetic")[0] == pytest.approx(energy - lost, rel=1e-13)
 
 
+def test_a_ball_like_body_is_compared_by_its_axis_after_its_joint_has_ended() -> None:
+    # Of moments that are equal, places tell which axis is answered: that of the joint, also when it holds no more.
+    found = solved(
+        [0.36, 0.57, 0.8],
+        ("trajectory",),
+        gravity=[0, 0, -10],
+        bodies={"body": {"mass": 1, "moments": [0.1, 0.1, 0.1], "at": [0, 0, 0], "places": {"p": [0, 0, 0.5]}}},
+        connections=[
+            {"kind": "ball-joint", "name": "hinge", "a": "body.p", "b": [0, 0, 0.5], "until": 0.57},
+            {"kind": "force", "name": "f", "place": "body", "force": [1, 0, 0]},
+        ],
+    )
+    assert happened(found) == [("end", "hinge")]
+    before, after = column(found, "body.velocity")[1:]
+    np.testing.assert_allclose(after - before, [0.23, 0, -2.3], rtol=1e-13, atol=1e-13)
+
+
 def test_wheels_turn_on_beside_what_rests_when_a_force_begins() -> None:
     found = solved(
         [0.1, 0.2],

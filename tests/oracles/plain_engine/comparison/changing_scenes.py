@@ -50,7 +50,7 @@ class _Changes:
         """Let one of the connections that act from the start begin later."""
         chosen = self._one_of([i for i, one in enumerate(self.connections) if one["kind"] in LATER])
         if chosen is not None and not {"from", "until"} & set(self.connections[chosen]):
-            self.connections[chosen] |= {"from": self._occasion()}
+            self.connections[chosen] |= {"from": self._occasion(self.connections[chosen])}
 
     def begin_another(self) -> None:
         """Add a connection between two places, or a place and the ground, that begins later."""
@@ -104,12 +104,15 @@ class _Changes:
         """Return an occasion; a time after one at which something begins."""
         return self._time(begins) if isinstance(begins, float) else self._occasion()
 
-    def _occasion(self) -> object:
+    def _occasion(self, own: Json | None = None) -> object:
+        """Return an occasion that is no event of a connection itself."""
         draw = self.draw
-        happens = [one["name"] for one in self.connections if one["kind"] in ONE_SIDED or {"from", "until"} & set(one)]
+        happens = [one for one in self.connections if one["kind"] in ONE_SIDED or {"from", "until"} & set(one)]
+        happens = [one for one in happens if one is not own]
         if happens and draw.chance(0.35):
-            event: Json = {"name": draw.one(happens)}
-            if draw.chance(0.2):
+            chosen = draw.one(happens)
+            event: Json = {"name": chosen["name"]}
+            if chosen["kind"] in ONE_SIDED and draw.chance(0.2):
                 event["nth"] = 2
             return {"event": event}
         if draw.chance(0.2):
