@@ -132,7 +132,8 @@ class Measures:
         if drive is not None:
             span = drive
         elif length is None:
-            span = constant(now.sqrt())
+            # What waits takes it where it begins.
+            span = constant(ONE if self.waiting else now.sqrt())
         else:
             span = constant(self.numerals.number(length, (*path, "length")))
         size, where = evaluated(span, self.table.q), (*path, "length" if drive is None else "drive")
@@ -160,7 +161,8 @@ class Measures:
         if key in self._lengths:
             return self._lengths[key]
         d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]
-        square = self.squared(d)
+        # What waits has the distance of its beginning.
+        square = ONE if self.waiting else self.squared(d)
         if not square > 0:
             raise InvalidParameter(path, "start with its ends apart: the direction of its force is not determined")
         index = self.table.coordinate(f"{name}.length", "m", square.sqrt())

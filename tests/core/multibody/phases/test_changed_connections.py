@@ -943,6 +943,21 @@ def test_what_shares_its_impulses_with_others_takes_energy() -> None:
     assert column(found, "energy.kinetic")[0] == pytest.approx(energy - lost, rel=1e-13)
 
 
+@pytest.mark.parametrize(
+    "tie", [{"kind": "rod"}, {"kind": "spring", "stiffness": 5}, {"kind": "damper", "coefficient": 1}]
+)
+def test_what_begins_later_need_not_have_a_length_at_the_start(tie: dict[str, Any]) -> None:
+    bob = {"mass": 1, "at": [0, 0], "velocity": [1, 0]}
+    later = {"name": "tie", "a": "bob", "b": [0, 0], "from": 0.5}
+    found = solved([1.0], ("trajectory",), bodies={"bob": bob}, connections=[{**later, **tie}])
+    assert happened(found) == [("begin", "tie")]
+    speed = {"rod": 0.0, "spring": np.cos(np.sqrt(5) / 2), "damper": np.exp(-0.5)}[tie["kind"]]
+    assert column(found, "bob.velocity")[0, 0] == pytest.approx(speed, abs=1e-14)
+    ended = solved([1.0], ("trajectory",), bodies={"bob": {"mass": 1, "at": [0, 0]}}, connections=[{**later, **tie}])
+    assert ended.problem is not None
+    assert ended.problem.code == "cannot-begin"
+
+
 def test_a_ball_like_body_is_compared_by_its_axis_after_its_joint_has_ended() -> None:
     # Of moments that are equal, places tell which axis is answered: that of the joint, also when it holds no more.
     found = solved(
