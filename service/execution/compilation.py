@@ -74,13 +74,20 @@ def run_together(commands: Iterable[list[str]]) -> bool:
 
 
 def compile_kernels(name: str) -> None:
-    """Import everything and answer every example in this process, beginning as `FIRST` says."""
+    """Import everything and answer every example in this process, beginning as `FIRST` says.
+
+    What answers members of studies together is two large kernels, which the process that begins with the rotation
+    compiles while the other compiles those of scenes.
+    """
     for module in FIRST[name]:
         import_module(module)
-    from service.execution.worker import terms_of, warm_handler
+    from service.execution.worker import new_handler, terms_of
     from service.routing import TABLE
 
-    handler = warm_handler(terms_of(Settings(), TABLE), scenes_first=name == "scenes")
+    handler = new_handler(terms_of(Settings(), TABLE))
+    if name == "rotation":
+        handler.warm_many()
+    handler.warm(scenes_first=name == "scenes")
     handler.warm_many()
 
 

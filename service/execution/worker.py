@@ -89,14 +89,14 @@ class Failed:
 @cache
 def handler_of(terms: Terms) -> RequestHandler:
     """Return this process's handler of requests, warm; inherited warm if the fork server has made it."""
-    return warm_handler(terms)
-
-
-def warm_handler(terms: Terms, *, scenes_first: bool = False) -> RequestHandler:
-    """Return a handler of requests for which every kernel is compiled or loaded; see `RequestHandler.warm`."""
-    made = RequestHandler(_routes(terms.table).values(), terms.budget, terms.limits)
-    made.warm(scenes_first=scenes_first)
+    made = new_handler(terms)
+    made.warm()
     return made
+
+
+def new_handler(terms: Terms) -> RequestHandler:
+    """Return a handler of requests for which no kernel is loaded; see `RequestHandler.warm`."""
+    return RequestHandler(_routes(terms.table).values(), terms.budget, terms.limits)
 
 
 def terms_of(settings: Settings, table: str) -> Terms:
