@@ -298,6 +298,7 @@ def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_eve
         while "polhode_long 0.0" in server.get("/metrics").text:
             assert not all(one.done() for one in flying), [one.result() for one in flying]
             assert time.monotonic() < until
+            time.sleep(0.05)
         for process in server_processes(server):
             os.kill(process, signal.SIGKILL)
         cut = [one.exception() is not None for one in flying]
