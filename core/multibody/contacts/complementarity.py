@@ -27,6 +27,7 @@ from core.multibody.contacts.contact_responses import (
 )
 from core.multibody.contacts.contact_states import Problem, State, pairs_of_sides, phase_table, sticks_more
 from core.multibody.contacts.frictionless import decided_without_friction, is_smooth
+from core.multibody.contacts.shared_loads import Share
 from core.multibody.contacts.slip_directions import (
     AHEAD,
     Direction,
@@ -49,10 +50,13 @@ class Decided:
     states : list of State
     unilateral : list of Unilateral
         The measures; what slides in space is turned into the direction of its slip.
+    shares : sequence of Share
+        How the load may be shared otherwise, with the same accelerations.
     """
 
     states: list[State]
     unilateral: list[Unilateral]
+    shares: Sequence[Share] = ()
 
 
 def decided(
@@ -87,6 +91,7 @@ def decided(
         states[known[other]] = State.OPEN
     assumed: dict[int, list[State]] = {}
     problems: dict[int, Problem] = {}
+    shares: dict[int, list[Share]] = {}
     for _ in range(len(groups) + 1):
         stale = [k for k, group in enumerate(groups) if assumed.get(k) != _beside(states, group)]
         if not stale:
@@ -102,11 +107,15 @@ def decided(
                 continue
             for i, state in zip(group, chosen.states, strict=True):
                 states[i] = state
+            shares[k] = [
+                {i: share[found.normal[i]] for i in group if not is_zero(share[found.normal[i]])}
+                for share in chosen.shares
+            ]
             for i, direction in chosen.directions.items():
                 unilateral[i] = turned(unilateral[i], one_of(direction))
     if problems:
         return problems[min(problems)]
-    return Decided(states, unilateral)
+    return Decided(states, unilateral, [share for own in shares.values() for share in own])
 
 
 def _beside(states: Sequence[State], group: Sequence[int]) -> list[State]:

@@ -24,6 +24,7 @@ from core.multibody.contacts.contact_start import assemble_contacts
 from core.multibody.contacts.contact_states import Problem, State, change_of, phase_table
 from core.multibody.contacts.impacts import Impact, approaching, impact
 from core.multibody.contacts.projection import projected
+from core.multibody.contacts.shared_loads import share_that_counts
 from core.multibody.equations.dynamics import kinetic
 from core.multibody.equations.packed import nearest
 from core.multibody.equations.starting_pieces import NoPiece, table_in_pieces
@@ -436,6 +437,15 @@ class _Run:
         require_pressed_in_plane(self.base, found)
         now = phase_table(table, found.unilateral, found.states, q, v)
         self.turning = dict.fromkeys(turns(now.table, [one.name for one in found.unilateral], LOOKED))
+        sharing = share_that_counts(now.table, found.unilateral, found.shares, [*self.turning])
+        if sharing:
+            return Problem(
+                "undetermined-friction",
+                "how the load is shared between the contacts is not determined, and their friction depends on it from "
+                "here on: what slides begins to turn",
+                sharing,
+                decided_by="compliances of the contacts, or three of them",
+            )
         for one in found.unilateral:
             if one.name not in self.turning or not is_zero(slip_rate(one, q, v)):
                 continue
