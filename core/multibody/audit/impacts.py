@@ -75,6 +75,8 @@ class Impacts:
         grouped: dict[float, list[MotionEvent]] = defaultdict(list)
         for event in answer.events:
             grouped[event.time].append(event)
+        # What begins at the instant of an impact may lead to another one, which begins with other rates.
+        self.chained = {event.time for event in answer.events if event.kind == "begin"}
         times = np.array(sorted(grouped))
         for time, events in grouped.items():
             first = time if at_begin else begin + 3.0 * self.step
@@ -182,8 +184,12 @@ class Impacts:
         for connection in description.connections:
             for force in connection.gaps(sides[0].placement) if connection.coefficients is not None else ():
                 name = force.rsplit(".", 1)[0]
-                # What begins or strikes at the same instant changes the rates as well.
-                plain = [(k, group) for k, group in enumerate(self.groups) if all(event.rates for event in group)]
+                # What strikes at the same instant changes the rates as well.
+                plain = [
+                    (k, group)
+                    for k, group in enumerate(self.groups)
+                    if all(event.rates for event in group) and group[0].time not in self.chained
+                ]
                 own = [(k, event) for k, group in plain for event in group if event.name == name]
                 if not own:
                     continue

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
 from core.systems.trajectory import MotionEvent
 from tests.core.multibody import contact_judge
@@ -114,3 +115,21 @@ def test_another_tangential_restitution_is_refused() -> None:
     failure = Audited(one.scene, wrong.answer, wrong.sampler, one.times).failure()
     assert failure is not None
     assert failure.law == "tangential restitution"
+
+
+def test_an_impact_by_which_something_begins_to_strike_is_no_single_one() -> None:
+    """A level bar: its left end strikes, a contact of the right one begins and strikes, and the left end once more."""
+    bar = {"mass": 1, "inertia": "1/3", "at": [0, "0.2"], "places": {"l": [-1, 0], "r": [1, 0]}}
+    floor = {"at": [0, 0]}
+    left = {"kind": "contact", "name": "left", "place": "bar.l", "on": floor}
+    right = {"kind": "contact", "name": "right", "place": "bar.r", "on": floor, "from": {"event": {"name": "left"}}}
+    scene = {"gravity": [0, -10], "bodies": {"bar": bar}, "connections": [left, right], "impacts": "stronge"}
+    answer = solve_scene(scene_from(scene), [0.1, 0.3], ("trajectory",))
+    assert [(event.kind, event.name) for event in answer.events] == [
+        ("touch", "left"),
+        ("begin", "right"),
+        ("touch", "right"),
+        ("touch", "left"),
+    ]
+    assert answer.trajectory is not None
+    assert not answer.trajectory.columns["bar.velocity"].values[1].any()
