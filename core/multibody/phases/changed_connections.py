@@ -79,8 +79,10 @@ def changed(base: Described, acting: Acting, due: Sequence[Entry], tracks: Track
         replace(track, q=table.q, v=struck(table, pushes.values()).v)
         for track, table in zip(tracks.each, tables, strict=True)
     ]
+    # What is at rest is so as far as its rates are known.
+    unsure = [float(x.rad()) for x in tracks.wide()[1]]
     for track, table in zip(each, tables, strict=True):
-        _require_kept(table, track.v, base.paths)
+        _require_kept(table, track.v, unsure, base.paths)
     wide = tables[0] if tracks.exact else _widened(tables[0], tracks)
     events, works = _recorded(bases[0], wide, due, pushes, tracks)
     return Change(bases[0], fresh[0], each, events, works, begin | end)
@@ -120,14 +122,15 @@ def _begun(base: Described, track: Track, begin: frozenset[str], paths: Mapping[
     return table
 
 
-def _require_kept(table: Table, v: Sequence[Ball], paths: Mapping[str, Path]) -> None:
+def _require_kept(table: Table, v: Sequence[Ball], unsure: Sequence[float], paths: Mapping[str, Path]) -> None:
     """Raise `InvalidParameter` where rates keep some rows and not what others hold beside these."""
     # What has been stopped is at rest as far as it is known beside its rates before.
     fastest = max((abs(float(x.mid())) for x in (*table.v, *v)), default=0.0)
     for row in table.rows:
         line = row.line(table.q)
-        left, size = row.rate - rate_along(line, v), sum(abs(float(x.mid())) for x in line.values()) * fastest
-        if not abs(float(left.mid())) <= CLOSE_RATE * size:
+        left = row.rate - rate_along(line, v)
+        allowed = sum(abs(float(x.mid())) * (CLOSE_RATE * fastest + unsure[j]) for j, x in line.items())
+        if not abs(float(left.mid())) <= allowed:
             rule = "agree with the rates that other connections hold"
             raise InvalidParameter(paths.get(row.name, ()), rule, remedy="end what holds another rate before")
 

@@ -993,3 +993,16 @@ def test_wheels_turn_on_beside_what_rests_when_a_force_begins() -> None:
     )
     # (0.02 + 4 x 0.005) phi'' = -4 phi: ten radians a second.
     np.testing.assert_allclose(column(found, "g.angle"), [0.2 * np.sin(1), 0.2 * np.sin(2)], rtol=1e-14)
+
+
+def test_what_has_been_stopped_may_let_go_at_that_instant() -> None:
+    """A bob that a wall stops at its lowest place stays there, with the wall or without."""
+    bob = {"mass": 1, "at": ["-sqrt(3)/4", "-1/4"]}
+    rod = {"kind": "rod", "a": "bob", "b": [0, 0]}
+    wall = {"kind": "contact", "name": "wall", "place": "bob", "on": {"at": [0, 0], "slope": {"degrees": 90}}}
+    wall |= {"restitution": 0, "until": {"event": {"name": "wall"}}}
+    scene = {"gravity": [0, -9.81], "bodies": {"bob": bob}, "connections": [rod, wall]}
+    answer = solve_scene(scene_from(scene), [0.5], ("trajectory",))
+    assert [event.kind for event in answer.events] == ["touch", "end"]
+    assert answer.trajectory is not None
+    np.testing.assert_allclose(answer.trajectory.columns["bob.position"].values, [[0, -0.5]], rtol=0, atol=1e-14)
