@@ -190,7 +190,7 @@ than doubles hold, and half of what pairs do."""
 
 
 KNOWN = 88
-"""Bits by which a place is less than the arms of its body where it is what rounding leaves: events are known to 92."""
+"""Bits by which a place is less than the size of its body where it is what rounding leaves: events are known to 92."""
 
 
 def _arms(table: Table) -> Iterator[int | None]:
@@ -211,6 +211,11 @@ def _gyration(table: Table) -> list[int]:
 def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     """Return units in which coordinates, rates and masses are of the order of one."""
     size, rate, pull = (_largest_of(table, x, ("m",)) for x in (table.q, table.v, acceleration))
+    large = _most(_gyration(table))
+    arms = _most([*_arms(table), large])
+    if size is not None and arms is not None and size < arms - KNOWN:
+        # A body at the origin, up to rounding.
+        size = None
     turn, spin = (_largest_of(table, x, ("1", "rad")) for x in (table.v, acceleration))
     pushes = _pushes(table)
     heaviest = _most([*map(exponent, table.load.values()), *(e for _, e in pushes)])
@@ -226,7 +231,7 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         times.append(-turn)
     if spin is not None:
         times.append(-(spin // 2))
-    times.extend(_times_of_formulas(table))
+    times.extend(_times_of_formulas(table, at_origin=size is None))
     # What starts at the origin, or as near to it as rounding leaves an event, is measured by how far it comes until it
     # turns back, or something else has turned.
     ways = []
@@ -236,13 +241,11 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
     # A turn that is nothing but rounding makes ways without end, and does not put at the origin what is farther from it
     # than a body is large.
-    large = _most(_gyration(table))
     if size is None or (ways and size < min(ways) + AT_ORIGIN and (large is None or size < large + AT_ORIGIN)):
         size = min(ways, default=None)
-    arm = _most(list(_arms(table)))
-    if arm is not None and size is not None and size < arm - KNOWN:
-        # A body that rests at the origin, up to rounding, is measured by the arms at which it is held.
-        size = arm
+    if arms is not None and (size is None or size < arms - KNOWN):
+        # What rests at the origin, up to rounding, is measured by how large it is, or the arms at which it is held.
+        size = arms
     size = 0 if size is None else size
     if rate is not None:
         times.append(size - rate)
@@ -297,10 +300,11 @@ HIGHEST_POWER = 5
 """Of time by which a formula tells how fast it changes: a square of what passes through zero moves it by the fourth."""
 
 
-def _times_of_formulas(table: Table) -> list[int]:
+def _times_of_formulas(table: Table, *, at_origin: bool) -> list[int]:
     """Return in what times formulas change the motion, as exponents: where they vanish their values do not tell.
 
-    Over the time that a power of the series takes to come up to a place, or what a rate makes of it.
+    Over the time that a power of the series takes to come up to a place, or what a rate makes of it. Where all is
+    `at_origin`, places tell nothing.
     """
     if not table.acting:
         return []
@@ -308,6 +312,8 @@ def _times_of_formulas(table: Table) -> list[int]:
     for units in (("m",), ("1", "rad")):
         own = [place for place, unit in zip(places, table.units, strict=True) if unit in units]
         sizes = [_most([exponent(place[k]) for place in own]) for k in range(HIGHEST_POWER + 1)]
+        if at_origin and units == ("m",):
+            sizes[0] = None
         for k, size in enumerate(sizes):
             ways = (
                 []
