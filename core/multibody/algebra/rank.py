@@ -126,10 +126,10 @@ def largest_of(numbers: Sequence[Ball]) -> int:
 def is_share_of(numbers: Sequence[Ball], share: float, others: Sequence[Ball]) -> bool:
     """Return whether the largest of numbers is at most a share of the largest of others, to the digits of doubles.
 
-    Others that are wide leave that width of what cancels: what is taken for zero on the way has it no more.
+    Of what cancels, others leave as much as they are wide: what is taken for zero on the way has that width no more.
     """
     sizes, whole = ([abs(float(x.mid())) for x in one] for one in (numbers, others))
-    wide = max((float(x.rad()) for x in others), default=0.0) / CLEAR
+    wide = max((float(x.rad()) for x in others), default=0.0)
     return max(sizes, default=0.0) <= max(share * max(whole, default=0.0), wide)
 
 
