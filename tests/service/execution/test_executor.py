@@ -14,6 +14,7 @@ from core.work import spend, work_limit
 from service.execution.admission import Compute, Sender
 from service.execution.executor import Executor
 from service.execution.request_handler import RequestHandler
+from service.http.held_bytes import HeldBytes
 from service.observability.metrics import Metrics
 from service.responses.svg import SVG
 from service.routes import questions
@@ -178,6 +179,7 @@ class Elsewhere:
 
     def __init__(self) -> None:
         self.asked: list[tuple[str, bytes, bool, str | None]] = []
+        self.held = HeldBytes(2**20)
 
     async def answer(
         self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender, *, later: bool
