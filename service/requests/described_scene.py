@@ -86,17 +86,32 @@ class EventQuestion(Request):
     nth: int | None = Field(default=None, ge=1, le=MOST_COUNTED, description="Which of them; the first if left out.")
 
 
-class OccasionInstead(Request):
-    """An occasion of the motion in place of a time: one of its fields is given."""
+class TimeOrOccasion(NumberInUnit):
+    """A time in a unit of its own, or an occasion of the motion."""
 
-    event: EventQuestion | None = Field(default=None, description="When it happens.")
-    when: WhenQuestion | None = Field(default=None, description="When a quantity takes a value.")
+    event: EventQuestion | None = Field(default=None, description="The time at which it happens.")
+    when: WhenQuestion | None = Field(default=None, description="The time at which a quantity takes a value.")
+
+
+class PolarOrOccasion(TimeOrOccasion):
+    """A vector by its length and its direction, or what a time may be."""
+
+    polar: list[float | str | NumberInUnit] | None = Field(
+        default=None, min_length=2, max_length=2, description=PolarVector.model_fields["polar"].description
+    )
+
+
+WIDER: Mapping[frozenset[Any], Any] = {
+    frozenset({NumberInUnit, TimeOrOccasion}): TimeOrOccasion,
+    frozenset({NumberInUnit, PolarVector, TimeOrOccasion}): PolarOrOccasion,
+}
+"""What stands for objects of several kinds: a union of them has nothing by which they are told apart."""
 
 
 def _form(hint: Any) -> Any:
     """Return a type of the language as the form of a question shows it: without the numbers that only Python has."""
     if hint is Occasion:
-        return OccasionInstead
+        return TimeOrOccasion
     origin, parts = get_origin(hint), get_args(hint)
     if origin is Sequence:
         return list.__class_getitem__(_form(parts[0]))
@@ -126,6 +141,9 @@ def _by_core(*hints: Any) -> Any:
     words = dict.fromkeys(word for part in shown if get_origin(part) is Literal for word in get_args(part))
     if words:
         shown = [*(part for part in shown if get_origin(part) is not Literal), Literal.__getitem__(tuple(words))]
+    objects = frozenset(part for part in shown if part in (NumberInUnit, PolarVector, TimeOrOccasion))
+    if objects in WIDER:
+        shown = [*(part for part in shown if part not in objects), WIDER[objects]]
     return ANNOTATED[reduce(or_, shown), SkipValidation()]  # type: ignore[type-arg]
 
 

@@ -54,6 +54,9 @@ def entry_kernels() -> set[Kernel]:
                     known |= {
                         f"{called}.{name}": (of, name) for of, name in kernels if of == f"{node.module}.{alias.name}"
                     }
+        # What a module makes a kernel of is compiled inside of that.
+        made = [node for node in tree.body if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)]
+        tree.body = [node for node in tree.body if node not in made]
         found |= {known[name] for name in names_outside_kernels(tree) if known.get(name) in kernels}
     return found
 
