@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 
 from flint import arb, arb_mat
 
@@ -144,7 +145,7 @@ def assemble_rates(
 ) -> list[str]:
     """Set the rates at the start: those given, and of the others those of least kinetic energy.
 
-    The rates of `gaps` that touch are zero as far as the others leave them open, and positive where they do not hold.
+    The rates of `gaps` that touch are zero as far as they can all be, and positive where they do not hold.
 
     Raises
     ------
@@ -177,25 +178,68 @@ def assemble_rates(
                 remedy="leave it out, or change what it contradicts",
             )
         noticed.append("/".join(map(str, entry.path)))
-    table.v = _least_energy(table, _with_gaps(elimination, [row.line(table.q) for row in gaps]))
+    table.v = _least_energy(table, _with_gaps(table, elimination, [row.line(table.q) for row in gaps]))
     return noticed
 
 
-def _with_gaps(others: Elimination, gaps: Sequence[Line]) -> Elimination:
-    """Return equations with those of gaps that stay closed, in an order in which none closes that can stay or open.
+def _with_gaps(table: Table, others: Elimination, gaps: Sequence[Line]) -> Elimination:
+    """Return equations with those of gaps that stay closed, whatever their order.
 
-    What would have to close beside those before it, as a string whose end is drawn off a floor, is held before them.
+    Gaps that can all stay closed do. Of those that cannot, as a string and a floor beside what moves upwards, the rates
+    are those of least kinetic energy by which none closes.
     """
-    first: list[int] = []
-    while True:
+    found = others.copy()
+    if all(is_zero(left) for line in gaps if (left := found.add(line, ZERO)) is not None):
+        return found
+    contrary = _contrary(others, gaps, len(table.q))
+    found = others.copy()
+    for i, line in enumerate(gaps):
+        if i not in contrary:
+            found.add(line, ZERO)
+    return _closed_at_least_energy(table, found, [gaps[i] for i in sorted(contrary)])
+
+
+def _contrary(others: Elimination, gaps: Sequence[Line], count: int) -> set[int]:
+    """Return the gaps whose rates depend on one another in a way by which they cannot all be zero.
+
+    The rates are unknowns beside those of the coordinates, which are determined first: what is left are equations
+    between the rates of gaps. Those that share unknowns belong together, in whatever order they were found.
+    """
+    found = Elimination([1] * count + [0] * len(gaps))
+    found.pivots = others.copy().pivots
+    for i, line in enumerate(gaps):
+        found.add({**line, count + i: -ONE}, ZERO)
+    together: list[tuple[set[int], bool]] = []
+    for pivot, (line, value) in found.pivots.items():
+        if pivot < count or not line:
+            # A coordinate, or a gap whose rate nothing can change.
+            continue
+        members, contradict = {pivot - count, *(j - count for j in line)}, not is_zero(value)
+        shared = [group for group in together if group[0] & members]
+        together = [group for group in together if not group[0] & members]
+        members = members.union(*(group for group, _ in shared))
+        together.append((members, contradict or any(other for _, other in shared)))
+    return {i for members, contradict in together if contradict for i in members}
+
+
+def _closed_at_least_energy(table: Table, others: Elimination, gaps: Sequence[Line]) -> Elimination:
+    """Return equations with those of gaps that are closed where energy is least of all rates by which none closes.
+
+    These are the ones beside which none closes, and of which each would close if it were not held.
+    """
+    rates: dict[tuple[int, ...], list[Ball]] = {}
+    for closed in (some for number in range(len(gaps) + 1) for some in combinations(range(len(gaps)), number)):
         found = others.copy()
-        for i in (*first, *(i for i in range(len(gaps)) if i not in first)):
-            left = found.add(gaps[i], ZERO)
-            if left is not None and left > 0 and i not in first:
-                first.insert(0, i)
-                break
-        else:
+        if any(found.add(gaps[i], ZERO) is not None for i in closed):
+            # One follows from the others, or contradicts them.
+            continue
+        v = _least_energy(table, found)
+        rates[closed] = [sum((x * v[j] for j, x in line.items()), ZERO) for line in gaps]
+        without = [rates[tuple(j for j in closed if j != i)][i] for i in closed]
+        if not any(x < 0 and not is_zero(x) for x in (*rates[closed], *(-x for x in without))):
             return found
+    # One closes whatever is chosen: that is an impact at the start.
+    return others
 
 
 def _least_energy(table: Table, elimination: Elimination) -> list[Ball]:

@@ -153,3 +153,39 @@ def test_what_a_motor_lifts_off_a_floor_by_a_string_rises_with_it_in_any_order(o
     assert column(answer, "load.velocity").values[0][1] == 1.0
     assert answer.energy is not None
     assert answer.energy.kinetic == pytest.approx(0.5 + (1 / math.sin(math.pi / 6)) ** 2, rel=1e-15)
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_what_may_rest_or_rise_beside_a_slack_string_rests_in_any_order(order: tuple[int, ...]) -> None:
+    """What hangs below rises: its string can stay taut, or what it hangs from on its shelf, but not both."""
+    bodies = {"upper": {"mass": 1, "at": [0, 1]}, "lower": {"mass": 1, "at": [0, 0.5], "velocity": [0, 1]}}
+    connections = [
+        {"kind": "string", "through": ["upper", "lower"], "restitution": 0},
+        {"kind": "contact", "place": "upper", "on": {"at": [0, 1]}},
+    ]
+    scene = {"gravity": [0, -10], "bodies": bodies, "connections": [connections[i] for i in order]}
+    answer = solve_scene(read(scene), [0.0, 0.05])
+    assert column(answer, "upper.velocity").values[0].tolist() == [0.0, 0.0]
+    assert answer.energy is not None
+    assert answer.energy.kinetic == 0.5
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_what_could_follow_one_of_two_slack_strings_rests_in_any_order(order: tuple[int, ...]) -> None:
+    """Both ends approach the middle as fast: neither string is preferred."""
+    bodies = {
+        "left": {"mass": 1, "at": [-1, 0], "velocity": [1, 0]},
+        "middle": {"mass": 1, "at": [0, 0]},
+        "right": {"mass": 1, "at": [1, 0], "velocity": [-1, 0]},
+    }
+    connections = [{"kind": "string", "through": [end, "middle"], "restitution": 0} for end in ("left", "right")]
+    scene = {"bodies": bodies, "connections": [connections[i] for i in order]}
+    answer = solve_scene(read(scene), [0.0, 0.05])
+    assert column(answer, "middle.velocity").values[0].tolist() == [0.0, 0.0]
+
+
+def test_the_end_of_a_string_follows_the_other_where_nothing_hinders_it() -> None:
+    bodies = {"a": {"mass": 1, "at": [-1, 0]}, "b": {"mass": 2, "at": [1, 0], "velocity": [0, 1]}}
+    string = {"kind": "string", "through": ["a", [-1, 2], [1, 2], "b"], "restitution": 0}
+    answer = solve_scene(read({"gravity": [0, -10], "bodies": bodies, "connections": [string]}), [0.0, 0.05])
+    assert column(answer, "a.velocity").values[0].tolist() == pytest.approx([0.0, -1.0], abs=1e-15)
