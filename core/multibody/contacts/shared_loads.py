@@ -2,16 +2,19 @@
 
 Four feet of a table that slides without a turn rub along one direction, and how they share the load moves nothing. As
 soon as the table turns, each rubs along a direction of its own, and the shares count: nothing in the mechanics of rigid
-bodies tells them.
+bodies tells them. Where it turns about its middle alone, opposite feet rub against one another, and the shares do not
+count. The motion is expanded with one share and with others; where these differ, the shares count.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.polynomials import Ball, is_zero
+from core.multibody.algebra.rank import independent
 from core.multibody.contacts.conditions_of_states import LOOKED
-from core.multibody.equations.expansion import Expansion, Series, expansion, product
+from core.multibody.contacts.contact_states import PhaseTable
+from core.multibody.equations.expansion import Expansion, expansion
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.table import Table
 
@@ -20,13 +23,13 @@ Share = Mapping[int, Ball]
 
 
 def share_that_counts(
-    table: Table, unilateral: Sequence[Unilateral], shares: Sequence[Share], turning: Sequence[str]
+    phase: PhaseTable, unilateral: Sequence[Unilateral], shares: Sequence[Share], turning: Sequence[str]
 ) -> tuple[str, ...]:
     """Return the contacts of a share that moves something just after a state, though not there; none if none does.
 
     Parameters
     ----------
-    table : Table
+    phase : PhaseTable
         Of the phase that begins.
     shares : sequence of Share
         That move nothing at the state.
@@ -36,62 +39,36 @@ def share_that_counts(
     affected = [share for share in shares if any(unilateral[i].name in turning for i in share)]
     if not affected:
         return ()
-    motion = expansion(table, LOOKED)
+    chosen = phase.table.independent_rows()
+    motion = expansion(phase.table, LOOKED, chosen)
+    if not _holds(phase.table, motion):
+        return ()
     for share in affected:
-        if _is_kept(motion, unilateral, share) and not _vanishes(_friction(motion, unilateral, share)):
-            return tuple(unilateral[i].name for i in share)
+        rows = [row for i in share if (row := phase.normal[i]) is not None]
+        for other in _otherwise(phase.table, motion, chosen, rows):
+            if _holds(phase.table, other) and not _is_same(motion, other):
+                return tuple(unilateral[i].name for i in share)
     return ()
 
 
-def _is_kept(motion: Expansion, unilateral: Sequence[Unilateral], share: Share) -> bool:
-    """Return whether the normal forces of a share go on to hold one another in balance."""
-    total: dict[int, Series] = {}
-    for i, force in share.items():
-        for j, poly in unilateral[i].normal.items():
-            _add(total, j, [force * x for x in motion.of(poly)])
-    return _vanishes(total)
-
-
-def _friction(motion: Expansion, unilateral: Sequence[Unilateral], share: Share) -> dict[int, Series]:
-    """Return the friction that goes with a share along every coordinate."""
-    total: dict[int, Series] = {}
-    for i, force in share.items():
-        one = unilateral[i]
-        if one.slip is None or one.across is None:
+def _otherwise(table: Table, motion: Expansion, chosen: Sequence[int], rows: Sequence[int]) -> Iterator[Expansion]:
+    """Yield motions in which one of the rows of a share carries nothing that carries something now."""
+    lines = [row.line(table.q) for row in table.rows]
+    for left_out in rows:
+        if left_out not in chosen or all(is_zero(x) for x in motion.multipliers[left_out]):
             continue
-        slips = [motion.of_rates(line) for line in (one.slip, one.across)]
-        units = _direction(*slips)
-        for line, unit in zip((one.slip, one.across), units, strict=True):
-            for j, poly in line.items():
-                along = motion.of(poly)[: len(unit)]
-                _add(total, j, [-force * one.kinetic * x for x in product(unit, along)])
-    return total
+        order = [*(r for r in range(len(lines)) if r != left_out), left_out]
+        others = [order[k] for k in independent(lines[r] for r in order)]
+        if left_out not in others:
+            yield expansion(table, LOOKED, sorted(others))
 
 
-def _direction(along: Series, across: Series) -> tuple[Series, Series]:
-    """Return the direction of a slip, from which its lowest power of time is divided out."""
-    first = next((k for k, pair in enumerate(zip(along, across, strict=True)) if not all(map(is_zero, pair))), None)
-    if first is None:
-        return [], []
-    x, y = along[first:], across[first:]
-    square = [a + b for a, b in zip(product(x, x), product(y, y), strict=True)]
-    size: Series = []
-    for k, s in enumerate(square):
-        # |s|^2 power by power.
-        inner = sum((size[a] * size[k - a] for a in range(1, k)), ZERO)
-        size.append(s.sqrt() if k == 0 else (s - inner) / (2 * size[0]))
-    units: tuple[Series, Series] = ([], [])
-    for unit, slip in zip(units, (x, y), strict=True):
-        for k, s in enumerate(slip):
-            unit.append((s - sum((unit[a] * size[k - a] for a in range(k)), ZERO)) / size[0])
-    return units
+def _holds(table: Table, motion: Expansion) -> bool:
+    """Return whether all rows go on to hold, also those that follow from the others at the state."""
+    return all(is_zero(x) for row in table.rows for x in motion.of_rates(row.rates)[1:])
 
 
-def _add(total: dict[int, Series], j: int, series: Series) -> None:
-    known = total.get(j)
-    # What is known of several directions is known up to the lowest of their powers.
-    total[j] = series if known is None else [a + b for a, b in zip(known, series, strict=False)]
-
-
-def _vanishes(total: Mapping[int, Series]) -> bool:
-    return all(is_zero(x) for series in total.values() for x in series)
+def _is_same(first: Expansion, second: Expansion) -> bool:
+    return all(
+        is_zero(a - b) for x, y in zip(first.places, second.places, strict=True) for a, b in zip(x, y, strict=True)
+    )

@@ -437,7 +437,7 @@ class _Run:
         require_pressed_in_plane(self.base, found)
         now = phase_table(table, found.unilateral, found.states, q, v)
         self.turning = dict.fromkeys(turns(now.table, [one.name for one in found.unilateral], LOOKED))
-        sharing = share_that_counts(now.table, found.unilateral, found.shares, [*self.turning])
+        sharing = share_that_counts(now, found.unilateral, found.shares, [*self.turning])
         if sharing:
             return Problem(
                 "undetermined-friction",

@@ -50,15 +50,16 @@ def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
     """Return what the error of each column is relative to: the largest value among the columns of its unit.
 
     That is a scale that is known already, as of what is small at all samples, or the largest sample. What is zero by
-    symmetry has no scale of its own. Angles that are zero within their error are measured against one radian, and their
-    rates against the largest speed over the largest distance; so are those that are no more than rounding of these.
+    symmetry has no scale of its own. Angles that are zero within their error are measured against one radian, their
+    rates against the largest speed over the largest distance, and speeds against the largest of these rates times that
+    distance; so are those that are no more than rounding of these.
     """
     largest, unknown = _sizes(columns)
     for column in columns.values():
         if column.scale:
             largest[column.unit] = max(largest[column.unit], column.scale)
-    away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
-    for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
+    away, speed, turn = (largest.get(unit, 0.0) for unit in ("m", "m/s", "rad/s"))
+    for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0), ("m/s", turn * away)):
         if largest.get(unit, 0.0) <= max(unknown.get(unit, 0.0), FLOOR * scale):
             largest[unit] = max(largest.get(unit, 0.0), scale)
     # Momenta and energies that are zero within their error have no scale; what they follow from has.

@@ -53,3 +53,40 @@ def test_what_translates_has_the_friction_of_a_place_however_its_direction_turns
         one.trajectory.columns[name].values for one, name in ((answer, "table.velocity"), (alone, "stone.velocity"))
     ]
     np.testing.assert_allclose(*velocities, rtol=0, atol=1e-12)
+
+
+HEXAGON = {"a": (0.5, 0), "b": (0.3, 0.4), "c": (-0.3, 0.4), "d": (-0.5, 0), "e": (-0.3, -0.4), "f": (0.3, -0.4)}
+
+
+@pytest.mark.parametrize("feet", [{name: (x, y) for name, (x, y, _) in FEET.items()}, HEXAGON])
+def test_what_turns_about_its_middle_rubs_alike_however_the_load_is_shared(feet: dict[str, Any]) -> None:
+    """Opposite feet rub against one another: the torque is mu m g r whatever each carries."""
+    plane = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    contacts = [
+        {"kind": "contact", "name": name, "place": f"table.{name}", "on": plane, "friction": 0.1} for name in feet
+    ]
+    places = {name: [x, y, -0.2] for name, (x, y) in feet.items()}
+    table = {"mass": 2, "moments": [0.3, 0.3, 0.5], "at": [0, 0, 0.2], "angular_velocity": [0, 0, 2], "places": places}
+    scene = {"gravity": [0, 0, -9.81], "bodies": {"table": table}, "connections": contacts}
+    slowing = 0.1 * 2 * 9.81 * np.hypot(*feet["a"]) / 0.5
+    times = [0.1, 0.3, 0.6]
+    answer = solve_scene(scene_from(scene), times, ("trajectory",))
+    assert answer.problem is None
+    assert answer.trajectory is not None
+    turns = answer.trajectory.columns["table.angular_velocity"]
+    expected = [[0, 0, 2 - slowing * t] for t in times]
+    np.testing.assert_allclose(turns.values, expected, rtol=0, atol=1e-14)
+
+
+def test_speeds_that_are_zero_have_the_scale_of_the_turn() -> None:
+    """On three feet, about a centre that stays where it is: what rounding leaves of its speed was its scale."""
+    plane = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    places = {"a": [0.5, 0, -0.2], "b": [-0.3, 0.4, -0.2], "c": [-0.3, -0.4, -0.2]}
+    contacts = [{"kind": "contact", "place": f"table.{name}", "on": plane, "friction": 0.1} for name in places]
+    table = {"mass": 2, "moments": [0.3, 0.3, 0.5], "at": [0, 0, 0.2], "angular_velocity": [0, 0, 2], "places": places}
+    scene = {"gravity": [0, 0, -9.81], "bodies": {"table": table}, "connections": contacts}
+    answer = solve_scene(scene_from(scene), [0.1, 0.3], ("trajectory",))
+    assert answer.trajectory is not None
+    np.testing.assert_allclose(answer.trajectory.columns["table.velocity"].values, 0, rtol=0, atol=1e-30)
+    turns = answer.trajectory.columns["table.angular_velocity"].values
+    np.testing.assert_allclose(turns[:, 2], [2 - 0.981 * 2 * t for t in (0.1, 0.3)], rtol=0, atol=1e-14)
