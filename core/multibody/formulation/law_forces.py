@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from functools import reduce
 
-from core.formulas import Node, names_of
-from core.multibody.algebra.polynomials import Ball
+from core.formulas import Node, names_of, value_of
+from core.multibody.algebra.polynomials import ONE, Ball
 from core.multibody.formulation.chart import Chart
 from core.multibody.formulation.formula_nodes import call, node_of_sum, node_of_terms
 from core.multibody.formulation.trigonometric_sums import TIME, Sum
 from core.multibody.formulation.unused_names import unused
 from core.multibody.language.motion_formulas import LENGTH
+from core.multibody.language.numerals import BALLS
 from core.multibody.laws.law import Input, Law
 
+MOST_PRODUCTS = 256
+"""Of terms, where two sums are multiplied out: laws with squares and cubes have a dozen, nested powers grow at once."""
 MULTIPLIER = "lambda_"
 """How the names of multipliers begin."""
 
@@ -32,6 +36,47 @@ def law_nodes(chart: Chart, names: Sequence[str]) -> dict[str, Node]:
     """Return the formulas of the laws of a chart's table in its variables, by the names of their values."""
     laws = zip(names, chart.table.acting, strict=True)
     return {name: node_of_terms([(law.scale, [_node(law.root, law, chart)])]) for name, law in laws}
+
+
+def law_sums(chart: Chart, names: Sequence[str]) -> dict[str, Sum]:
+    """Return the laws of a chart's table that are polynomials of its variables, by the names of their values."""
+    sums = ((name, law, _sum(law.root, law, chart)) for name, law in zip(names, chart.table.acting, strict=True))
+    return {name: total.times(law.scale) for name, law, total in sums if total is not None}
+
+
+def _sum(node: Node, law: Law, chart: Chart) -> Sum | None:
+    if node.kind in ("number", "pi"):
+        return Sum.number(value_of(node, {}, BALLS))
+    if node.kind == "name":
+        return _value(law.inputs[node.text], chart) if node.text in law.inputs else Sum.number(law.numbers[node.text])
+    parts = [_sum(one, law, chart) for one in node.inner]
+    known = [one for one in parts if one is not None]
+    if len(known) < len(parts):
+        return None
+    match node.kind:
+        case "negative":
+            return known[0].times(-ONE)
+        case "+":
+            return known[0] + known[1]
+        case "-":
+            return known[0] - known[1]
+        case "*":
+            return _product(known[0], known[1])
+        case "/":
+            inverse = known[1].inverse()
+            return _product(known[0], inverse)
+        case "^":
+            power = known[1].constant()
+            if power is not None and power in range(1, MOST_PRODUCTS + 1):
+                return reduce(_product, parts[:1] * int(float(power)))
+    return None
+
+
+def _product(first: Sum | None, second: Sum | None) -> Sum | None:
+    """Return a product that is not too long, None of what is none."""
+    if first is None or second is None or len(first.terms) * len(second.terms) > MOST_PRODUCTS:
+        return None
+    return first * second
 
 
 def _node(node: Node, law: Law, chart: Chart) -> Node:

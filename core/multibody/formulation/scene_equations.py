@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import reduce
 
 from core.errors import BudgetExceeded
 from core.formulas import Node
@@ -21,7 +22,7 @@ from core.multibody.formulation.constraint_forces import constraint_forces
 from core.multibody.formulation.euler import conserved_of_body, euler_equations
 from core.multibody.formulation.formula_nodes import node_of_sum, node_of_terms, require_doubles
 from core.multibody.formulation.lagrange import lagrange_equations, measures_of
-from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes
+from core.multibody.formulation.law_forces import MULTIPLIER, constants_of, force_symbols, law_nodes, law_sums
 from core.multibody.formulation.linear_equations import linear_equations
 from core.multibody.formulation.self_check import check_chart, check_formula
 from core.multibody.formulation.sides import Sides, equation_sides
@@ -202,7 +203,12 @@ def _write_part(
     _conserve(written, energy_of_part(found), piece.table, chart.start, chart.rates)
     if not any(row.slide is not None for row in table.rows):
         # Others are written with the direction of friction at the start, and hold then alone.
-        written.motion |= found.equations
+        # What a law conserves shows where it is written out.
+        sums = law_sums(chart, names)
+        written.motion |= {
+            name: reduce(lambda left, law: left.replaced(*law), sums.items(), one)
+            for name, one in found.equations.items()
+        }
     if not multipliers and not piece.table.acting:
         written.smooth.append((found.equations, chart.start))
     written.start |= chart.start

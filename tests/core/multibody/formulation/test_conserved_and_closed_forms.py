@@ -207,3 +207,34 @@ def names_in(text: str) -> set[str]:
     """Return the names in a formula, without primes."""
     found = re.findall(r"(?<![\w.])[A-Za-z][A-Za-z0-9_]*(?:-[A-Za-z0-9_]+)*(?:\.[A-Za-z][\w-]*)*(?!\w*\()", text)
     return {*found} - {"sin", "cos", "sqrt", "exp", "atan2"}
+
+
+@pytest.mark.parametrize("power", [0, 1, 2])
+@pytest.mark.parametrize("turning", [0, 2])
+def test_central_forces_by_formula_keep_angular_momentum(power: int, turning: int) -> None:
+    """A field along the place, with a magnetic one: m (x vy - y vx) + q B (x^2 + y^2)/2."""
+    pull = f"-(x^2 + y^2)^{power}" if power else "-1"
+    question = {
+        "bodies": {"stone": {"mass": 1.5, "at": [1, 0.25], "velocity": [-0.3, 0.5]}},
+        "connections": [{"kind": "field", "force": [f"{pull}*x + {turning}*vy", f"{pull}*y - {turning}*vx"]}],
+    }
+    scene = scene_of(question)
+    answer = answer_of(scene, [0.0, 0.7, 1.9])
+    assert answer.equations is not None
+    (kept,) = answer.equations.conserved
+    assert kept.name == "angular momentum of stone.x, stone.y"
+    for row in range(3):
+        jets = columns_at(scene, answer, row)
+        x, y = jets["stone.x"], jets["stone.y"]
+        by_hand = 1.5 * (x.value * y.rate - y.value * x.rate) + turning * (x.value**2 + y.value**2) / 2
+        assert float(by_hand) == pytest.approx(kept.value, rel=1e-12)
+
+
+def test_nested_powers_of_a_law_are_not_multiplied_out() -> None:
+    question = {
+        "bodies": {"stone": {"mass": 1, "at": [0.1, 0.2]}},
+        "connections": [{"kind": "field", "force": ["(((1 + x + y)^9)^9)^9", "0"]}],
+    }
+    equations = answer_of(scene_of(question), [0.0]).equations
+    assert equations is not None
+    assert all("stone.x" not in one.name for one in equations.conserved)
