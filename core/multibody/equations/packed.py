@@ -196,7 +196,9 @@ KNOWN = 88
 def _arms(table: Table) -> Iterator[int | None]:
     """Yield the exponents of lengths by which rows join a turn, or a direction, to a place."""
     for row in table.rows:
-        constant = {j: e for j, poly in row.rates.items() if (e := exponent(poly.get((), ZERO))) is not None}
+        # A constant beside a place that varies, as in the line of a length, may be what rounding leaves of zero.
+        lines = {j: poly[()] for j, poly in row.rates.items() if poly.keys() == {()}}
+        constant = {j: e for j, x in lines.items() if (e := exponent(x)) is not None}
         places = [e for j, e in constant.items() if table.units[j] == "m"]
         yield from (e - max(places) for j, e in constant.items() if places and table.units[j] in ("1", "rad"))
 
