@@ -126,12 +126,14 @@ def checked(request: Json, name: str, seed: int = 0, original: View | Refusal | 
         return None
     own = viewed(lambda: answered(request)) if original is None else original
     found = viewed(lambda: answered(made.request))
+    rounded = name in ("a finer accuracy", "moved far")
     if isinstance(own, Refusal) or isinstance(found, Refusal):
-        rounded = name in ("a finer accuracy", "moved far")
         if rounded and isinstance(found, Refusal) and found.kind == "AccuracyUnreachable":
             return []
         return differences(own, found)
-    return differences(made.image(own), made.restored(found, own))
+    different = differences(made.image(own), made.restored(found, own))
+    # How near a collision an answer ends, before which it cannot be told from a near miss, depends on rounding.
+    return [one for one in different if not (rounded and one.where == "lost-event / lost-event")]
 
 
 def _checked_by_condition(request: Json, random: np.random.Generator) -> list[Difference] | None:
@@ -155,10 +157,13 @@ def _checked_by_condition(request: Json, random: np.random.Generator) -> list[Di
         # A number on which the scene hangs, such as the place of a joint, cannot be moved.
         return [one for one in differences(own, found) if one.kind == "crash"]
 
+    moments = [[body.get("moments") for body in one["bodies"].values()] + [one.get("let")] for one in (request, other)]
+    moments_moved = moments[0] != moments[1]
+
     def kept(key: str, figure: Figure) -> bool:
-        # An axis alone tells the attitude of a body that is symmetric, which it is exactly or not at all.
-        symmetric = figure.what == "axis" and not (key in own.figures and key in found.figures)
-        return key in stated and not symmetric
+        # Whether an axis tells the attitude of a body, and which, depends on what moments are equal exactly.
+        same = key in own.figures and key in found.figures and not moments_moved
+        return key in stated and (same or figure.what != "axis")
 
     def wide(view: View) -> View:
         figures = {key: figure for key, figure in view.figures.items() if kept(key, figure)}
