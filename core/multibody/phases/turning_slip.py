@@ -427,9 +427,20 @@ def onset_power(table: Table, name: str) -> int | None:
 
 
 def turns(table: Table, names: Sequence[str], order: int) -> list[str]:
-    """Return which of the contacts named, whose friction may turn, do so: their slip does not stay along one line."""
+    """Return which of the contacts named, whose friction may turn, do so: their slip does not stay along one line.
+
+    So does what may as well turn, as far as is known: of a slip that begins by hardly anything, coefficients are wider
+    than the slip itself.
+    """
     rows = [row for row in table.rows if row.slide is not None and row.name in names]
     if not rows:
         return []
     motion = expansion(table, order)
-    return [row.name for row in rows if any(not is_zero(x) for x in motion.of_rates((row.slide or (0, {}, {}))[2]))]
+    found = []
+    for row in rows:
+        assert row.slide is not None
+        along, across = (motion.of_rates(line) for line in row.slide[1:])
+        size = max(abs(x.mid()) for x in along)
+        if any(not is_zero(x) or x.rad() > size for x in across):
+            found.append(row.name)
+    return found

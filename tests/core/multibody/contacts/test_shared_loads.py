@@ -90,3 +90,18 @@ def test_speeds_that_are_zero_have_the_scale_of_the_turn() -> None:
     np.testing.assert_allclose(answer.trajectory.columns["table.velocity"].values, 0, rtol=0, atol=1e-30)
     turns = answer.trajectory.columns["table.angular_velocity"].values
     np.testing.assert_allclose(turns[:, 2], [2 - 0.981 * 2 * t for t in (0.1, 0.3)], rtol=0, atol=1e-14)
+
+
+def test_a_turn_that_begins_by_hardly_anything_has_friction_that_turns() -> None:
+    """A torque that grows until three feet let go: it is followed with them or not at all."""
+    plane = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    places = {"a": [0.5, 0, -0.2], "b": [-0.3, 0.4, -0.2], "c": [-0.3, -0.4, -0.2]}
+    contacts = [{"kind": "contact", "place": f"table.{name}", "on": plane, "friction": 0.1} for name in places]
+    torque = {"kind": "torque", "body": "table", "torque": [0, 0, "2*t"]}
+    table = {"mass": 2, "moments": [0.3, 0.3, 0.5], "at": [0, 0, 0.2], "places": places}
+    scene = {"gravity": [0, 0, -9.81], "bodies": {"table": table}, "connections": [*contacts, torque]}
+    answer = solve_scene(scene_from(scene), [0.3, 0.6, 1.0], ("trajectory",))
+    assert answer.trajectory is not None
+    column = answer.trajectory.columns["table.angular_velocity"]
+    expected = [max(t - 0.4905, 0) ** 2 / 0.5 for t in (0.3, 0.6, 1.0)[: len(column.values)]]
+    np.testing.assert_allclose(column.values[:, 2], expected, rtol=0, atol=max(column.error, 1e-15))
