@@ -55,7 +55,7 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
     low, high = way * ends[:-1], way * ends[1:]
     piece, error = np.zeros(len(low)), np.zeros(len(low))
     owner = np.arange(len(low))
-    whole, _, size = _gauss(integrand, low, high)
+    whole, _, size, _ = _gauss(integrand, low, high)
     largest = float(size.max(initial=0.0))
     points = len(low) * len(_POINTS)
     for depth in range(_DEPTH):
@@ -63,11 +63,13 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
         require_few_points(points)
         middle = 0.5 * (low + high)
         halves = _gauss(integrand, np.concatenate([low, middle]), np.concatenate([middle, high]))
-        (first, finer), (_, by_reference), (_, finer_size) = (
+        (first, finer), (_, by_reference), (_, finer_size), (_, apart) = (
             (x[: len(low)], x[: len(low)] + x[len(low) :]) for x in halves
         )
         off = np.abs(finer - whole)
-        settled = (off <= _FINE * np.maximum(finer_size, 2.0**-8 * largest)) | (middle == low) | (depth == _DEPTH - 1)
+        # What the integrand itself is wrong by, shorter intervals do not make smaller.
+        least = np.maximum(_FINE * np.maximum(finer_size, 2.0**-8 * largest), apart)
+        settled = (off <= least) | (middle == low) | (depth == _DEPTH - 1)
         np.add.at(piece, owner[settled], finer[settled])
         np.add.at(error, owner[settled], (off + 4.0 * np.abs(finer - by_reference) + _FINE * finer_size)[settled])
         go = ~settled
@@ -90,9 +92,10 @@ def require_few_points(points: int) -> None:
         raise BudgetExceeded(what, points, MOST_POINTS, path=("outputs",), remedy=remedy)
 
 
-def _gauss(integrand: Integrand, low: Floats, high: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the integral over each interval, that of the reference, and that of the terms."""
+def _gauss(integrand: Integrand, low: Floats, high: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return the integral over each interval, that of the reference, of the terms, and of how far both are apart."""
     half = 0.5 * (high - low)
     times = (0.5 * (low + high))[:, None] + half[:, None] * _POINTS
     own, by_reference, size = (values.reshape(times.shape) for values in integrand(times.ravel()))
-    return half * (own @ _WEIGHTS), half * (by_reference @ _WEIGHTS), np.abs(half) * (size @ _WEIGHTS)
+    sizes = (size, np.abs(own - by_reference))
+    return half * (own @ _WEIGHTS), half * (by_reference @ _WEIGHTS), *(np.abs(half) * (x @ _WEIGHTS) for x in sizes)
