@@ -366,7 +366,6 @@ TESTED_IN |= {
             "language/strings"
         ),
         "reduction/test_passes": "reduction/pinning reduction/reduction",
-        "trajectory/test_along": "trajectory/integrals",
         "trajectory/test_occurrences": "trajectory/search_along",
         "contacts/test_complementarity": (
             "contacts/conditions_of_states contacts/contact_forces contacts/contact_responses contacts/contact_states"
