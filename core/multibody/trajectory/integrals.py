@@ -97,5 +97,5 @@ def _gauss(integrand: Integrand, low: Floats, high: Floats) -> tuple[Floats, Flo
     half = 0.5 * (high - low)
     times = (0.5 * (low + high))[:, None] + half[:, None] * _POINTS
     own, by_reference, size = (values.reshape(times.shape) for values in integrand(times.ravel()))
-    sizes = (size, np.abs(own - by_reference))
-    return half * (own @ _WEIGHTS), half * (by_reference @ _WEIGHTS), *(np.abs(half) * (x @ _WEIGHTS) for x in sizes)
+    terms, apart = (np.abs(half) * (x @ _WEIGHTS) for x in (size, np.abs(own - by_reference)))
+    return half * (own @ _WEIGHTS), half * (by_reference @ _WEIGHTS), terms, apart
