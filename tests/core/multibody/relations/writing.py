@@ -185,6 +185,12 @@ def renamed(request: Json) -> Transformed | None:
             connection["slips"] = [place(one) for one in connection["slips"]]
         if "sides" in connection:
             connection["sides"] = {place(name): sides for name, sides in connection["sides"].items()}
+    for occasion in (one[key] for one in found.get("connections", ()) for key in ("from", "until", "at") if key in one):
+        if isinstance(occasion, dict) and "name" in (event := occasion.get("event", {})):
+            event["name"] = names[event["name"]]
+        if isinstance(occasion, dict) and "when" in occasion:
+            owner, dot, rest = occasion["when"]["quantity"].partition(".")
+            occasion["when"]["quantity"] = names.get(owner, owner) + dot + rest
     if "searched" in found:
         found["searched"] = [bodies[found["searched"][0]], found["searched"][1]]
     return Transformed(found, lambda view: view.renamed(names))
