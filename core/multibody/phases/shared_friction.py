@@ -52,9 +52,11 @@ def first_without_share(
         found, samples = search(watched, left), 1
     if not found or found[0].watch.what != "grip":
         return found
-    # By how much the time is missed shows on the second track.
-    later = replace(found[-1], time=found[-1].time + _MISSED * found[-1].time)
-    return [found[0], later]
+    # By how much the time is missed shows on the second track, also on its clock.
+    last, missed = found[-1], _MISSED * found[-1].time
+    units = phase.tables[0].table.units
+    places = [x + missed if unit == "s" else x for x, unit in zip(last.q, units, strict=True)]
+    return [found[0], replace(last, time=last.time + missed, q=places)]
 
 
 def _sums_that_are_negative(phase: Phase, cones: SharedCones, times: Floats) -> list[Watch]:

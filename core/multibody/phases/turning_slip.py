@@ -427,20 +427,17 @@ def onset_power(table: Table, name: str) -> int | None:
 
 
 def turns(table: Table, names: Sequence[str], order: int) -> list[str]:
-    """Return which of the contacts named, whose friction may turn, do so: their slip does not stay along one line.
-
-    So does what may as well turn, as far as is known: of a slip that begins by hardly anything, coefficients are wider
-    than the slip itself.
-    """
+    """Return which of the contacts named, whose friction may turn, do so: their slip does not stay along one line."""
     rows = [row for row in table.rows if row.slide is not None and row.name in names]
     if not rows:
         return []
     motion = expansion(table, order)
-    found = []
-    for row in rows:
-        assert row.slide is not None
-        along, across = (motion.of_rates(line) for line in row.slide[1:])
-        size = max(abs(x.mid()) for x in along)
-        if any(not is_zero(x) or x.rad() > size for x in across):
-            found.append(row.name)
-    return found
+    return [row.name for row in rows if row.slide is not None and not _is_straight(motion, *row.slide[1:])]
+
+
+def _is_straight(motion: Expansion, along: LinearForm, across: LinearForm) -> bool:
+    """Return whether a slip stays along the line of its lowest power of time, which is not known without its width."""
+    first, second = motion.of_rates(along), motion.of_rates(across)
+    begins = next((k for k, x in enumerate(first) if not is_zero(x)), None)
+    aside = ZERO if begins is None else second[begins] / first[begins]
+    return all(is_zero(y - aside * x) for x, y in zip(first, second, strict=True))
