@@ -6,37 +6,30 @@ shows in the documentation what core's dataclasses say of it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import MISSING, fields
-from decimal import Decimal
-from fractions import Fraction
-from functools import reduce
-from operator import or_
-from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Self, get_type_hints
 
 from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
 from core.multibody.language.body import SceneBody as DescribedBody
-from core.multibody.language.connection import Connection, Occasion
+from core.multibody.language.connection import Connection
 from core.multibody.language.contacts import ImpactLaw, Simultaneous
 from core.multibody.language.kinds import KINDS
-from core.multibody.language.occasions import MOST_COUNTED
 from core.multibody.language.reading import scene_from, unknown_field
 from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
-from core.multibody.language.units import LONGEST_UNIT
 from core.multibody.language.written import Number
 from core.multibody.language.written_units import unit_at
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
 from core.multibody.statics.thresholds import RestOf
-from core.multibody.trajectory.occurrences import MOST_FOUND, ExtremesOf, When
+from core.multibody.trajectory.occurrences import ExtremesOf, When
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
-from service.requests.annotations import ANNOTATED
 from service.requests.figures import SensitivitiesQuestion
+from service.requests.written_values import WhenQuestion, read_by_core
 from service.schemas import ROUND, Request, Rounding, Times
 
 MOST_OUTPUTS = 30
@@ -46,111 +39,10 @@ SEARCHES = ("when", "extremes", "thresholds")
 """The key of each search."""
 
 
-class NumberInUnit(Request):
-    """An angle in degrees, or a number in a unit of its own, which are converted exactly."""
-
-    degrees: float | str | None = Field(default=None, description="A decimal, or a formula in quotes; without a unit.")
-    value: float | str | None = Field(default=None, description="A decimal, or a formula in quotes; with its unit.")
-    unit: str | None = Field(default=None, max_length=LONGEST_UNIT, description='"cm", "kg m^2", "km/h", "rpm", ...')
-
-
-class PolarVector(Request):
-    """A vector of the plane by its length and its direction."""
-
-    polar: list[float | str | NumberInUnit] = Field(
-        min_length=2, max_length=2, description="Length, and angle from the first axis (rad)."
-    )
-
-
-class WhenQuestion(Request):
-    """A quantity, and the value that it is to take."""
-
-    quantity: str = Field(
-        description="A column, such as rod.angle or s.tension; of a vector a component, such as ball.position.x, or "
-        "its length, such as ball.velocity.length.",
-        max_length=100,
-    )
-    equals: Annotated[float | str | NumberInUnit, SkipValidation()] = Field(
-        description="In the unit of the quantity; a number as those of the description, which may use names of let."
-    )
-    nth: int | None = Field(
-        default=None, ge=1, le=MOST_FOUND, description="Which time after the start; every one if left out."
-    )
-
-
-class EventQuestion(Request):
-    """An event of the motion."""
-
-    name: str = Field(max_length=200, description="Of the connection, as events give it.")
-    kind: str | None = Field(default=None, max_length=100, description="Of the event; any if left out.")
-    nth: int | None = Field(default=None, ge=1, le=MOST_COUNTED, description="Which of them; the first if left out.")
-
-
-class TimeOrOccasion(NumberInUnit):
-    """A time in a unit of its own, or an occasion of the motion."""
-
-    event: EventQuestion | None = Field(default=None, description="The time at which it happens.")
-    when: WhenQuestion | None = Field(default=None, description="The time at which a quantity takes a value.")
-
-
-class PolarOrOccasion(TimeOrOccasion):
-    """A vector by its length and its direction, or what a time may be."""
-
-    polar: list[float | str | NumberInUnit] | None = Field(
-        default=None, min_length=2, max_length=2, description=PolarVector.model_fields["polar"].description
-    )
-
-
-WIDER: Mapping[frozenset[Any], Any] = {
-    frozenset({NumberInUnit, TimeOrOccasion}): TimeOrOccasion,
-    frozenset({NumberInUnit, PolarVector, TimeOrOccasion}): PolarOrOccasion,
-}
-"""What stands for objects of several kinds: a union of them has nothing by which they are told apart."""
-
-
-def _form(hint: Any) -> Any:
-    """Return a type of the language as the form of a question shows it: without the numbers that only Python has."""
-    if hint is Occasion:
-        return TimeOrOccasion
-    origin, parts = get_origin(hint), get_args(hint)
-    if origin is Sequence:
-        return list.__class_getitem__(_form(parts[0]))
-    if origin is Mapping:
-        return dict.__class_getitem__((str, Any if parts[1] is Any else _form(parts[1])))
-    if not parts or origin is Literal:
-        return hint
-    shown = [part for part in parts if part not in (NoneType, Decimal, Fraction, int, Mapping[str, Any])]
-    if not shown:
-        return dict[str, Any]
-    if Mapping[str, Any] in parts:
-        # What may be a number or a vector is turned about an axis: polar vectors are places, and what may be a list of
-        # names an object of its own.
-        other = Mapping[str, Any] if Sequence[str] in parts else PolarVector
-        shown.append(NumberInUnit if float in parts else other)
-    return reduce(or_, map(_form, shown))
-
-
-def _alternatives(form: Any) -> tuple[Any, ...]:
-    return get_args(form) if get_origin(form) in (Union, UnionType) else (form,)
-
-
-def _by_core(*hints: Any) -> Any:
-    """Return the type of a value that core checks, and that may be of each of some types; the document shows it."""
-    shown = [part for form in map(_form, hints) for part in _alternatives(form)]
-    # Two kinds of connection may share a field, each with words of its own.
-    words = dict.fromkeys(word for part in shown if get_origin(part) is Literal for word in get_args(part))
-    if words:
-        shown = [*(part for part in shown if get_origin(part) is not Literal), Literal.__getitem__(tuple(words))]
-    objects = frozenset(part for part in shown if part in (NumberInUnit, PolarVector, TimeOrOccasion))
-    if objects in WIDER:
-        shown = [*(part for part in shown if part not in objects), WIDER[objects]]
-    return ANNOTATED[reduce(or_, shown), SkipValidation()]  # type: ignore[type-arg]
-
-
 def _body_form() -> type[Request]:
     hints = get_type_hints(DescribedBody)
     own: dict[str, Any] = {
-        entry.name: (_by_core(hints[entry.name]), ... if entry.default is MISSING and entry.name == "at" else None)
+        entry.name: (read_by_core(hints[entry.name]), ... if entry.default is MISSING and entry.name == "at" else None)
         for entry in fields(DescribedBody)
     }
     own["body"] = (Body | None, None)
@@ -168,7 +60,7 @@ def _connection_form() -> type[Request]:
             name, hint = entry.name.rstrip("_"), written[entry.name]
             kinds.setdefault(name, {})[kind] = hint
     own: dict[str, Any] = {
-        name: (_by_core(*hints.values()), Field(default=None, description=f"For {', '.join(hints)}."))
+        name: (read_by_core(*hints.values()), Field(default=None, description=f"For {', '.join(hints)}."))
         for name, hints in kinds.items()
     }
     meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in KINDS.items())
@@ -180,11 +72,11 @@ def _connection_form() -> type[Request]:
 
 SceneBody: Any = _body_form()
 SceneConnection: Any = _connection_form()
-Gravity: Any = _by_core(get_type_hints(Scene)["gravity"])
-WrittenNumber: Any = _by_core(Number)
-NamedNumbers: Any = _by_core(get_type_hints(Scene)["let"])
-ConnectionReadByCore: Any = _by_core(SceneConnection)
-Assemble: Any = _by_core(get_type_hints(Scene)["assemble"])
+Gravity: Any = read_by_core(get_type_hints(Scene)["gravity"])
+WrittenNumber: Any = read_by_core(Number)
+NamedNumbers: Any = read_by_core(get_type_hints(Scene)["let"])
+ConnectionReadByCore: Any = read_by_core(SceneConnection)
+Assemble: Any = read_by_core(get_type_hints(Scene)["assemble"])
 SCENE_FIELDS = tuple(entry.name for entry in fields(Scene))
 
 
