@@ -41,7 +41,7 @@ def ensure_compiled() -> None:
     if record.exists():
         LOG.info("loading kernels")
         return
-    LOG.info("compiling kernels: one to two minutes, once")
+    LOG.info("compiling kernels: two to four minutes, once")
     if not run_together([sys.executable, "-m", __spec__.name, name] for name in FIRST):
         LOG.warning("a process that compiles kernels has failed")
         return
